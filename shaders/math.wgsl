@@ -1,0 +1,53 @@
+// Elementary functions with bounds of their own. WGSL grants sin and cos an
+// absolute error of 2^-11 and log one of 2^-21 near 1, which would show in narrow
+// lobes; these polynomials use only + - * / and integer operations.
+
+const LN_2_HIGH: f32 = 0.693145751953125;
+const LN_2_LOW: f32 = 1.42860682030941723212e-6;
+
+// (sin 2πu, cos 2πu) for u in [0, 1). The quadrant is taken off exactly; on the
+// rest, |x| <= π/4, minimax polynomials (Cephes sinf.c, Moshier 1989).
+fn sincos_2pi(u: f32) -> vec2<f32> {
+    let quadrant = floor(4.0 * u + 0.5);
+    let x = (4.0 * u - quadrant) * 1.5707963267948966;
+    let x2 = x * x;
+    let s = x + x * x2 * (-1.6666654611e-1 + x2 * (8.3321608736e-3 + x2 * -1.9515295891e-4));
+    let c = 1.0 - 0.5 * x2
+        + x2 * x2 * (4.166664568298827e-2 + x2 * (-1.388731625493765e-3 + x2 * 2.443315711809948e-5));
+    let q = u32(quadrant);
+    let swapped = (q & 1u) != 0u;
+    let sine = select(s, c, swapped);
+    let cosine = select(c, s, swapped);
+    return vec2<f32>(
+        select(sine, -sine, (q & 2u) != 0u),
+        select(cosine, -cosine, ((q + 1u) & 2u) != 0u),
+    );
+}
+
+// -log(1 - u) for u a multiple of 2^-24 in [0, 1): 1 - u is then exact. With
+// 1 - u = 2^k (1 + f), 1 + f in [√½, √2), s = f/(2 + f), the series
+// log(1 + f) = 2s + 2s³/3 + … is summed to s⁹; |s| <= 0.1716.
+fn minus_log_complement(u: f32) -> f32 {
+    let bits = bitcast<u32>(1.0 - u);
+    // Moves the mantissa's break from 1 to √½ (0x3f3504f3).
+    let shifted = bits + (0x3f800000u - 0x3f3504f3u);
+    let k = f32(i32(shifted >> 23u) - 127);
+    let f = bitcast<f32>((shifted & 0x007fffffu) + 0x3f3504f3u) - 1.0;
+    let s = f / (2.0 + f);
+    let z = s * s;
+    let tail = z * (0.66666666666 + z * (0.4 + z * (0.28571428571 + z * 0.22222222222)));
+    // log(1 + f) = f - s (f - tail); exact in f where f is small.
+    let log1p = f - s * (f - tail);
+    return -(k * LN_2_HIGH + (log1p + k * LN_2_LOW));
+}
+
+// 1 - exp(-x) for x in [0, 32]: exp(-x) = 2^k e^r, |r| <= ½ ln 2, and e^r - 1 by
+// its Taylor series to r⁷, so that small x keeps its relative precision.
+fn one_minus_exp_minus(x: f32) -> f32 {
+    let k = floor(0.5 - x * 1.4426950408889634);
+    let r = (-x - k * LN_2_HIGH) - k * LN_2_LOW;
+    let p = r + r * r * (0.5 + r * (0.16666666667 + r * (0.041666666667
+        + r * (0.0083333333333 + r * (0.0013888888889 + r * 1.9841269841e-4)))));
+    let power = bitcast<f32>(u32(i32(k) + 127) << 23u);
+    return (1.0 - power) - power * p;
+}

@@ -1,0 +1,148 @@
+// Entry points for the tests: one function of the kernel over a table of inputs.
+
+@group(0) @binding(4) var<storage, read> inputs: array<vec4<u32>>;
+@group(0) @binding(5) var<storage, read_write> outputs: array<vec4<u32>>;
+
+fn input_floats(at: u32) -> vec4<f32> {
+    return bitcast<vec4<f32>>(inputs[at]);
+}
+
+// Row: pcg4d key. Result: its bits.
+@compute @workgroup_size(64)
+fn probe_pcg4d(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    outputs[id.x] = pcg4d(inputs[id.x]);
+}
+
+// Row: four words. Result: their unit floats.
+@compute @workgroup_size(64)
+fn probe_unit_float(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let bits = inputs[id.x];
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(
+        unit_float(bits.x), unit_float(bits.y), unit_float(bits.z), unit_float(bits.w)));
+}
+
+// Row: u, x, -, -. Result: sin 2πu, cos 2πu, -log(1 - u), 1 - exp(-x).
+@compute @workgroup_size(64)
+fn probe_math(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let row = input_floats(id.x);
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(
+        sincos_2pi(row.x), minus_log_complement(row.x), one_minus_exp_minus(row.y)));
+}
+
+// Rows in threes: origin and form (0 factored, 1 anchored); direction and side (0
+// entry, 1 exit, 2 exit leaving); position and size, with the offset in the fourth
+// row. Result: distance, b, c, discriminant.
+@compute @workgroup_size(64)
+fn probe_hit(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let origin = input_floats(4u * id.x);
+    let direction = input_floats(4u * id.x + 1u);
+    let shape = input_floats(4u * id.x + 2u);
+    let offset = input_floats(4u * id.x + 3u).x;
+    let ray = Ray(origin.xyz, direction.xyz);
+    var q = factored(ray, shape.xyz, shape.w);
+    if origin.w == 1.0 {
+        q = anchored(ray, shape.xyz, offset, shape.w);
+    }
+    var t = entry(q);
+    if direction.w > 0.0 {
+        t = exit(q, direction.w == 2.0);
+    }
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(t, q.b, q.c, q.discriminant));
+}
+
+// Rows in pairs: origin, then direction with the packed sphere that the ray leaves.
+// Results in pairs: distance and sphere, then -; the surface point and the normal
+// follow in the next two.
+@compute @workgroup_size(64)
+fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
+    if 3u * id.x >= arrayLength(&outputs) { return; }
+    let ray = Ray(input_floats(2u * id.x).xyz, input_floats(2u * id.x + 1u).xyz);
+    let hit = nearest(ray, inputs[2u * id.x + 1u].w);
+    outputs[3u * id.x] = vec4<u32>(bitcast<u32>(hit.distance), hit.sphere, 0u, 0u);
+    if hit.sphere < UNFINISHED {
+        let point = surface_point(ray, hit);
+        outputs[3u * id.x + 1u] = bitcast<vec4<u32>>(vec4<f32>(point.position, 0.0));
+        outputs[3u * id.x + 2u] = bitcast<vec4<u32>>(vec4<f32>(point.normal, 0.0));
+    }
+}
+
+// Row: u, v, exponent, -. Result: direction of the lobe about +z, 1 - cosα.
+@compute @workgroup_size(64)
+fn probe_phong(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let row = input_floats(id.x);
+    let t = one_minus_exp_minus(minus_log_complement(row.x) / (row.z + 1.0));
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(sample_phong(row.xy, row.z), t));
+}
+
+// Rows in threes: normal and exponent (negative: diffuse); incoming direction; u, v.
+// Result: scattered direction and weight.
+@compute @workgroup_size(64)
+fn probe_scatter(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let normal = input_floats(3u * id.x);
+    let incoming = input_floats(3u * id.x + 1u);
+    let u = input_floats(3u * id.x + 2u).xy;
+    var s = scatter_diffuse(normal.xyz, u);
+    if normal.w >= 0.0 {
+        s = scatter_glossy(normal.xyz, incoming.xyz, normal.w, u);
+    }
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(s.direction, s.weight));
+}
+
+// Rows in threes: camera ray of pixel (x, y) and u; -. Result: direction.
+@compute @workgroup_size(64)
+fn probe_camera(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let ray = camera_ray(inputs[id.x].xy, input_floats(id.x).zw);
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(ray.direction, 0.0));
+}
+
+// Row: r, g, b as floats, and the shift as a signed integer. Results in fours: the
+// fixed-point channels (r and g, then b and luminance), then the square.
+@compute @workgroup_size(64)
+fn probe_fixed(@builtin(global_invocation_id) id: vec3<u32>) {
+    if 3u * id.x >= arrayLength(&outputs) { return; }
+    let row = input_floats(id.x);
+    let shift = bitcast<i32>(inputs[id.x].w);
+    let r = to_fixed(row.x, shift);
+    let g = to_fixed(row.y, shift);
+    let b = to_fixed(row.z, shift);
+    let y = luminance(r, g, b);
+    outputs[3u * id.x] = vec4<u32>(r, g);
+    outputs[3u * id.x + 1u] = vec4<u32>(b, y);
+    outputs[3u * id.x + 2u] = vec4<u32>(square(y), 0u);
+}
+
+// Row: r, g, b as floats, and the pixel's number. All rows are added to the film at
+// once, so rows of one pixel compete for its words.
+@compute @workgroup_size(64)
+fn probe_film(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&inputs) { return; }
+    add_sample(inputs[id.x].w * FILM_WORDS, input_floats(id.x).xyz);
+}
+
+// No input. Result: every field of the uniform buffer as the kernel reads it, in the
+// order of the structs, padding left out as zeros.
+@compute @workgroup_size(64)
+fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= SPHERE_CAPACITY { return; }
+    if id.x == 0u {
+        outputs[0] = vec4<u32>(bitcast<vec3<u32>>(scene.origin), scene.bounces);
+        outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.width);
+        outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), scene.height);
+        outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.seed);
+        outputs[4] = vec4<u32>(scene.factored_count, scene.sphere_count, scene.start,
+            bitcast<u32>(scene.film_shift));
+        outputs[5] = vec4<u32>(scene.bound_bits, 0u, 0u, 0u);
+    }
+    let s = scene.spheres[id.x];
+    let at = 6u + 3u * id.x;
+    outputs[at] = vec4<u32>(bitcast<vec3<u32>>(s.position), bitcast<u32>(s.size));
+    outputs[at + 1u] = vec4<u32>(bitcast<vec3<u32>>(s.color), bitcast<u32>(s.exponent));
+    outputs[at + 2u] = vec4<u32>(bitcast<u32>(s.offset), s.index, s.kind, s.inside);
+}

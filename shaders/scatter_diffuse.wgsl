@@ -1,0 +1,4 @@
+// Every surface that scatters is diffuse.
+fn scatter(sphere: u32, normal: vec3<f32>, incoming: vec3<f32>, u: vec2<f32>) -> Scattering {
+    return scatter_diffuse(normal, u);
+}

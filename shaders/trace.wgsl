@@ -1,0 +1,61 @@
+// One path: from the camera to a light, to nowhere, or to its last bounce.
+
+struct SurfacePoint {
+    position: vec3<f32>,
+    // Unit normal on the side that the ray came from.
+    normal: vec3<f32>,
+}
+
+// On a sphere in factored form the point is put back onto the surface along the
+// normal, which takes off most of the rounding of the distance.
+fn surface_point(ray: Ray, hit: Hit) -> SurfacePoint {
+    let place = scene.spheres[hit.sphere].position;
+    let size = scene.spheres[hit.sphere].size;
+    let reached = ray.origin + hit.distance * ray.direction;
+    let is_factored = hit.sphere < scene.factored_count;
+    let outward = normalize(select(place + size * reached, reached - place, is_factored));
+    let position = select(reached, place + size * outward, is_factored);
+    return SurfacePoint(position, facing_normal(outward, hit.sphere));
+}
+
+// The ray through a point of the pixel drawn uniformly (box filter).
+fn camera_ray(pixel: vec2<u32>, u: vec2<f32>) -> Ray {
+    let x = 2.0 * (f32(pixel.x) + u.x) / f32(scene.width) - 1.0;
+    let y = 1.0 - 2.0 * (f32(pixel.y) + u.y) / f32(scene.height);
+    return Ray(scene.origin, normalize(scene.forward + x * scene.right + y * scene.up));
+}
+
+struct Sample {
+    radiance: vec3<f32>,
+    // False where a driver cut a loop short.
+    finished: bool,
+}
+
+fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
+    var ray = camera_ray(pixel, unit_floats(random_bits(key, 0u)));
+    var throughput = vec3<f32>(1.0);
+    var leaving = scene.start;
+    for (var bounce = 0u; bounce <= scene.bounces; bounce++) {
+        let hit = nearest(ray, leaving);
+        if hit.sphere >= UNFINISHED {
+            return Sample(vec3<f32>(0.0), hit.sphere == NO_SPHERE);
+        }
+        let color = scene.spheres[hit.sphere].color;
+        if scene.spheres[hit.sphere].kind == KIND_EMITTER {
+            return Sample(throughput * color, true);
+        }
+        if bounce == scene.bounces {
+            return Sample(vec3<f32>(0.0), true);
+        }
+        let point = surface_point(ray, hit);
+        let u = unit_floats(random_bits(key, bounce + 1u));
+        let scattering = scatter(hit.sphere, point.normal, ray.direction, u);
+        if scattering.weight == 0.0 {
+            return Sample(vec3<f32>(0.0), true);
+        }
+        throughput *= scattering.weight * color;
+        ray = Ray(point.position, scattering.direction);
+        leaving = hit.sphere;
+    }
+    return Sample(vec3<f32>(0.0), false);
+}

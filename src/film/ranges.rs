@@ -1,0 +1,95 @@
+//! Which samples of every pixel a film holds: disjoint half-open ranges.
+
+use crate::scene::MAX_SPP;
+use std::fmt;
+use std::ops::Range;
+
+/// Sample indices lie below this: the random numbers have 56 bits for them.
+pub const MAX_SAMPLE_INDEX: u64 = 1 << 56;
+
+/// Why a film cannot take some samples.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum RangeError {
+    /// They would be counted twice.
+    #[error("samples {}..{} are already in the film", .0.start, .0.end)]
+    Overlap(Range<u64>),
+    /// The sums have no room for so many.
+    #[error("a film holds at most {MAX_SPP} samples per pixel, these would be {0}")]
+    TooMany(u64),
+    /// There are no random numbers for them.
+    #[error("sample indices lie below 2^56, this range ends at {0}")]
+    TooFar(u64),
+}
+
+/// Disjoint half-open ranges in ascending order, joined where they touch.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SampleRanges(Vec<Range<u64>>);
+
+impl SampleRanges {
+    /// Number of samples.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.0.iter().map(|r| r.end - r.start).sum()
+    }
+
+    /// The ranges, ascending.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Range<u64>] {
+        &self.0
+    }
+
+    /// Adds a range.
+    ///
+    /// # Errors
+    /// If a sample of it is already there, or there would be too many; the ranges are
+    /// then unchanged.
+    pub fn insert(&mut self, range: Range<u64>) -> Result<(), RangeError> {
+        if range.is_empty() {
+            return Ok(());
+        }
+        if range.end > MAX_SAMPLE_INDEX {
+            return Err(RangeError::TooFar(range.end));
+        }
+        let total = self.count() + (range.end - range.start);
+        if total > MAX_SPP {
+            return Err(RangeError::TooMany(total));
+        }
+        let at = self.0.partition_point(|r| r.start < range.start);
+        let before = at.checked_sub(1).map(|i| &self.0[i]).filter(|r| r.end > range.start);
+        if let Some(other) = before.or(self.0.get(at).filter(|r| r.start < range.end)) {
+            let shared = other.start.max(range.start)..other.end.min(range.end);
+            return Err(RangeError::Overlap(shared));
+        }
+        self.0.insert(at, range);
+        self.0.dedup_by(|next, last| {
+            let touch = last.end == next.start;
+            if touch {
+                last.end = next.end;
+            }
+            touch
+        });
+        Ok(())
+    }
+
+    /// Both sets of ranges together.
+    ///
+    /// # Errors
+    /// If they share a sample, or are too many together.
+    pub fn union(&self, other: &Self) -> Result<Self, RangeError> {
+        let mut union = self.clone();
+        for range in &other.0 {
+            union.insert(range.clone())?;
+        }
+        Ok(union)
+    }
+}
+
+impl fmt::Display for SampleRanges {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, range) in self.0.iter().enumerate() {
+            let comma = if i > 0 { "," } else { "" };
+            write!(f, "{comma}{}..{}", range.start, range.end)?;
+        }
+        Ok(())
+    }
+}

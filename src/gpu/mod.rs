@@ -1,0 +1,10 @@
+//! The GPU tracer: device, buffers and dispatches, by way of wgpu.
+
+mod bands;
+mod device;
+mod pace;
+pub mod probe;
+mod tracer;
+
+pub use device::{Adapter, Gpu, adapters};
+pub use tracer::GpuTracer;

@@ -1,0 +1,273 @@
+//! Traces on a device: one invocation per pixel sample, sums in bands of the film.
+
+use super::bands::{self, Band};
+use super::device::{Adapter, Gpu};
+use super::pace::Pace;
+use crate::bound::sample_scale;
+use crate::effects::Effects;
+use crate::film::{Film, FilmError, SampleRanges, SampleScale};
+use crate::kernel::{self, Kernel, Nearest, Tile, layout};
+use crate::scene::{ImageSize, Scene};
+use crate::tracer::{
+    Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer,
+};
+use crate::viewpoint::Viewpoint;
+use std::ops::Range;
+use std::time::Instant;
+use wgpu::util::DeviceExt;
+
+/// Iterations after which lavapipe leaves a loop without a word, counted over all
+/// loops of an invocation group (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa).
+const MAX_LOOP_ITERATIONS: u64 = 65_535;
+
+/// Workgroups along one dimension of a dispatch, WebGPU's default limit.
+const MAX_WORKGROUPS: u32 = 65_535;
+
+/// A scene on a device.
+#[derive(Debug)]
+pub struct GpuTracer {
+    gpu: Gpu,
+    size: ImageSize,
+    scale: SampleScale,
+    tile: Tile,
+    samples: SampleRanges,
+    pipeline: wgpu::ComputePipeline,
+    work: wgpu::Buffer,
+    ledger: wgpu::Buffer,
+    bands: Vec<(Band, wgpu::BindGroup)>,
+    pace: Pace,
+}
+
+impl GpuTracer {
+    /// Opens the adapter and puts the scene there, with the kernel that the scene calls for.
+    ///
+    /// # Errors
+    /// If the device cannot be opened, or scene or picture do not fit it.
+    pub fn new(scene: &Scene, adapter: &Adapter) -> Result<Self, TraceError> {
+        let viewpoint = Viewpoint::of(scene);
+        let scale = sample_scale(scene);
+        let packed = kernel::pack(scene, &viewpoint, scale)
+            .map_err(|error| TraceError::Device(error.to_string()))?;
+        let kernel = Kernel {
+            effects: Effects::of(scene, &viewpoint),
+            nearest: Nearest::of(&packed),
+            tile: Tile::of(scene.size()),
+        };
+        check_loops(&kernel, &packed.scene)?;
+        Self::with_kernel(scene, adapter, &packed.scene, &kernel.wgsl(), kernel.tile)
+    }
+
+    /// Puts a packed scene and the text of a kernel on the device; the tests use it to
+    /// run kernels that are wrong on purpose.
+    ///
+    /// # Errors
+    /// If the device cannot be opened, or kernel or picture do not fit it.
+    pub fn with_kernel(
+        scene: &Scene,
+        adapter: &Adapter,
+        packed: &layout::Scene,
+        wgsl: &str,
+        tile: Tile,
+    ) -> Result<Self, TraceError> {
+        let gpu = Gpu::open(adapter)?;
+        let device = gpu.device();
+        let pipeline = pipeline(device, wgsl);
+        gpu.check()?;
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("scene"),
+            contents: bytemuck::bytes_of(packed),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let work = buffer::<layout::Dispatch>(
+            device,
+            "work",
+            wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        );
+        let ledger = buffer::<layout::Ledger>(
+            device,
+            "ledger",
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        );
+        let layout = pipeline.get_bind_group_layout(0);
+        let bands = bands::allocate(&gpu, scene.size())?
+            .into_iter()
+            .map(|band| {
+                let group = bind(device, &layout, [&uniform, &work, &band.buffer, &ledger]);
+                (band, group)
+            })
+            .collect();
+        gpu.check()?;
+        Ok(Self {
+            gpu,
+            size: scene.size(),
+            scale: sample_scale(scene),
+            tile,
+            samples: SampleRanges::default(),
+            pipeline,
+            work,
+            ledger,
+            bands,
+            pace: Pace::default(),
+        })
+    }
+
+    /// Traces `count` samples from `first` on, of the given rows of a band.
+    fn dispatch(
+        &mut self,
+        band: usize,
+        rows: Range<u32>,
+        first: u64,
+        count: u32,
+    ) -> Result<(), TraceError> {
+        let (band, group) = &self.bands[band];
+        #[expect(clippy::cast_possible_truncation, reason = "takes the two words apart")]
+        let work = layout::Dispatch {
+            first_sample_low: first as u32,
+            first_sample_high: (first >> 32) as u32,
+            sample_count: count,
+            band_start: band.rows.start,
+            row_start: rows.start,
+            row_end: rows.end,
+        };
+        let started = Instant::now();
+        self.gpu.queue().write_buffer(&self.work, 0, bytemuck::bytes_of(&work));
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(
+                self.size.width().div_ceil(self.tile.width),
+                (rows.end - rows.start).div_ceil(self.tile.height),
+                count.div_ceil(self.tile.samples),
+            );
+        }
+        self.gpu.run(encoder)?;
+        let samples =
+            u64::from(self.size.width()) * u64::from(rows.end - rows.start) * u64::from(count);
+        self.pace.learn(samples, started.elapsed());
+        Ok(())
+    }
+
+    /// Samples of every pixel that one round of dispatches traces, at most `left`.
+    fn round(&self, left: u64) -> u32 {
+        let frame = u64::from(self.size.width()) * self.bands[0].0.rows.len() as u64;
+        let most = u64::from(MAX_WORKGROUPS * self.tile.samples).min(left);
+        least((self.pace.samples() / frame).max(1), most)
+    }
+
+    /// Rows of one dispatch that traces `count` samples of each pixel, at most `left`.
+    fn rows(&self, count: u32, left: u32) -> u32 {
+        let row = u64::from(self.size.width()) * u64::from(count);
+        let tiles = self.pace.samples() / row / u64::from(self.tile.height);
+        least(tiles.max(1) * u64::from(self.tile.height), u64::from(left))
+    }
+}
+
+impl Tracer for GpuTracer {
+    fn add_samples(&mut self, range: Range<u64>) -> Result<(), TraceError> {
+        let mut samples = self.samples.clone();
+        samples.insert(range.clone()).map_err(FilmError::from)?;
+        let mut first = range.start;
+        while first < range.end {
+            let count = self.round(range.end - first);
+            for band in 0..self.bands.len() {
+                let Range { mut start, end } = self.bands[band].0.rows.clone();
+                while start < end {
+                    let rows = self.rows(count, end - start);
+                    self.dispatch(band, start..start + rows, first, count)?;
+                    start += rows;
+                }
+            }
+            first += u64::from(count);
+        }
+        self.samples = samples;
+        Ok(())
+    }
+
+    fn film(&mut self) -> Result<Film, TraceError> {
+        let mut film = Film::awaiting(self.size, self.scale, self.samples.clone());
+        let bands: Vec<&Band> = self.bands.iter().map(|(band, _)| band).collect();
+        bands::read(&self.gpu, &bands, film.pixels_mut())?;
+        Ok(film)
+    }
+
+    fn ledger(&mut self) -> Result<Ledger, TraceError> {
+        let bytes = bands::read_buffer(&self.gpu, &self.ledger)?;
+        let ledger: layout::Ledger = bytemuck::pod_read_unaligned(&bytes);
+        let recorded = layout::LEDGER_RECORDS.min(ledger.count as usize);
+        let records = ledger.records[..recorded].iter().map(|record| InvalidSample {
+            pixel: record.pixel,
+            index: u64::from(record.index_high) << 32 | u64::from(record.index_low),
+            reason: match record.reason {
+                layout::REASON_UNFINISHED => InvalidReason::Unfinished,
+                _ => InvalidReason::OutOfBounds,
+            },
+        });
+        Ok(Ledger { count: u64::from(ledger.count), records: records.collect() })
+    }
+
+    fn describe(&self) -> Description {
+        self.gpu.description().clone()
+    }
+}
+
+fn check_loops(kernel: &Kernel, packed: &layout::Scene) -> Result<(), TraceError> {
+    let iterations = kernel.loop_iterations(packed.bounces, packed.sphere_count);
+    if iterations < MAX_LOOP_ITERATIONS {
+        return Ok(());
+    }
+    Err(TraceError::Device(format!(
+        "{} bounces among {} spheres take {iterations} loop iterations per sample; drivers may stop \
+         after {MAX_LOOP_ITERATIONS} (fewer bounces or --device cpu will do)",
+        packed.bounces, packed.sphere_count
+    )))
+}
+
+fn pipeline(device: &wgpu::Device, wgsl: &str) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("candor kernel"),
+        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some("render"),
+        layout: None,
+        module: &module,
+        entry_point: Some("render"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size_of::<T>() as u64,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    buffers: [&wgpu::Buffer; 4],
+) -> wgpu::BindGroup {
+    let entries: Vec<wgpu::BindGroupEntry> = (0..)
+        .zip(buffers)
+        .map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &entries,
+    })
+}
+
+fn least(a: u64, b: u64) -> u32 {
+    u32::try_from(a.min(b)).expect("both are counts of rows or of samples in one dispatch")
+}

@@ -1,0 +1,124 @@
+//! Rust mirrors of the WGSL structs of `shaders/scene.wgsl` and `shaders/ledger.wgsl`,
+//! field for field; `tests/layout.rs` compares them with naga's offsets and through an
+//! echo on the device. Padding that WGSL leaves implicit is spelled out here.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Spheres that the uniform buffer holds.
+pub const SPHERE_CAPACITY: usize = 512;
+/// In place of a sphere: none.
+pub const NO_SPHERE: u32 = u32::MAX;
+/// Invalid samples that the ledger records.
+pub const LEDGER_RECORDS: usize = 16;
+
+/// [`Sphere::kind`] of an emitter.
+pub const KIND_EMITTER: u32 = 0;
+/// [`Sphere::kind`] of a diffuse surface.
+pub const KIND_DIFFUSE: u32 = 1;
+/// [`Sphere::kind`] of a glossy surface.
+pub const KIND_GLOSSY: u32 = 2;
+
+/// Ledger reason: a loop was cut short.
+pub const REASON_UNFINISHED: u32 = 1;
+/// Ledger reason: not a number from 0 to the bound.
+pub const REASON_OUT_OF_BOUNDS: u32 = 2;
+
+/// One sphere, in kernel units.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Sphere {
+    /// Factored form: centre. Anchored form: gradient of the sphere's function at the focus.
+    pub position: [f32; 3],
+    /// Factored form: radius. Anchored form: curvature 1/R.
+    pub size: f32,
+    /// Albedo, or radiance of an emitter.
+    pub color: [f32; 3],
+    /// Phong exponent of a glossy surface.
+    pub exponent: f32,
+    /// Anchored form: value of the sphere's function at the focus.
+    pub offset: f32,
+    /// Place in the scene file.
+    pub index: u32,
+    /// One of the `KIND_` constants.
+    pub kind: u32,
+    /// 1 where the camera is inside the sphere.
+    pub inside: u32,
+}
+
+/// The whole scene.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Scene {
+    /// Camera position, in kernel units.
+    pub origin: [f32; 3],
+    /// Most scatterings of one path.
+    pub bounces: u32,
+    /// Unit view direction.
+    pub forward: [f32; 3],
+    /// Picture width in pixels.
+    pub width: u32,
+    /// Half the picture's width on the plane at distance 1.
+    pub right: [f32; 3],
+    /// Picture height in pixels.
+    pub height: u32,
+    /// Half the picture's height on the plane at distance 1.
+    pub up: [f32; 3],
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Spheres in factored form; they come first.
+    pub factored_count: u32,
+    /// All spheres.
+    pub sphere_count: u32,
+    /// Sphere that the camera stands on, or [`NO_SPHERE`].
+    pub start: u32,
+    /// Film scale: a sample x becomes trunc(x·2^`film_shift`).
+    pub film_shift: i32,
+    /// Bit pattern of the bound on one sample.
+    pub bound_bits: u32,
+    /// Implicit in WGSL.
+    pub padding: [u32; 3],
+    /// Factored ones first, each group in the order of the scene file.
+    pub spheres: [Sphere; SPHERE_CAPACITY],
+}
+
+/// The work of one dispatch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Dispatch {
+    /// Low word of the first sample's index.
+    pub first_sample_low: u32,
+    /// High word of the first sample's index.
+    pub first_sample_high: u32,
+    /// Samples of every pixel.
+    pub sample_count: u32,
+    /// First row of the band that the film buffer holds.
+    pub band_start: u32,
+    /// First row to trace.
+    pub row_start: u32,
+    /// The row after the last to trace.
+    pub row_end: u32,
+}
+
+/// The address of an invalid sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Record {
+    /// Pixel number.
+    pub pixel: u32,
+    /// Low word of the sample index.
+    pub index_low: u32,
+    /// High word of the sample index.
+    pub index_high: u32,
+    /// One of the `REASON_` constants.
+    pub reason: u32,
+}
+
+/// Invalid samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Ledger {
+    /// How many.
+    pub count: u32,
+    /// The first ones.
+    pub records: [Record; LEDGER_RECORDS],
+}

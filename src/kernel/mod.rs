@@ -1,0 +1,9 @@
+//! The kernel: WGSL composed for one scene, and the scene packed for it.
+
+mod compose;
+pub mod layout;
+mod pack;
+
+pub use compose::{Kernel, Nearest, Tile, UNROLLED_SPHERES, probe_source, validate};
+pub use layout::SPHERE_CAPACITY;
+pub use pack::{KernelUnits, Packed, TooManySpheres, pack};

@@ -1,0 +1,149 @@
+//! A validated scene in kernel units, ready for the device.
+
+use super::layout::{self, NO_SPHERE, SPHERE_CAPACITY};
+use crate::film::SampleScale;
+use crate::scene::{Scene, Sphere, Surface};
+use crate::viewpoint::Viewpoint;
+use glam::DVec3;
+
+/// The scene has more spheres than the uniform buffer holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the scene has {0} spheres; this version traces at most {SPHERE_CAPACITY} on a device \
+     (--device cpu traces any number)"
+)]
+pub struct TooManySpheres(pub usize);
+
+/// From scene units to kernel units: `(p - focus)·2^-exponent`, so that the extent lies
+/// in [1, 2). Scaling by a power of two rounds nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KernelUnits {
+    focus: DVec3,
+    scale: f64,
+}
+
+impl KernelUnits {
+    /// The units of a scene seen from `viewpoint`.
+    #[must_use]
+    pub fn of(viewpoint: &Viewpoint) -> Self {
+        Self { focus: viewpoint.focus(), scale: (-viewpoint.extent().log2().floor()).exp2() }
+    }
+
+    /// A point in kernel units.
+    #[must_use]
+    pub fn point(&self, p: DVec3) -> DVec3 {
+        (p - self.focus) * self.scale
+    }
+
+    /// A length in kernel units.
+    #[must_use]
+    pub fn length(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+}
+
+/// A packed scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Packed {
+    /// What goes into the uniform buffer.
+    pub scene: Box<layout::Scene>,
+    /// Spheres in factored form.
+    pub factored: usize,
+    /// Spheres in anchored form.
+    pub anchored: usize,
+}
+
+/// Packs a scene for the device.
+///
+/// # Errors
+/// If it has more than [`SPHERE_CAPACITY`] spheres.
+pub fn pack(
+    scene: &Scene,
+    viewpoint: &Viewpoint,
+    scale: SampleScale,
+) -> Result<Packed, TooManySpheres> {
+    let spheres = scene.spheres();
+    if spheres.len() > SPHERE_CAPACITY {
+        return Err(TooManySpheres(spheres.len()));
+    }
+    let units = KernelUnits::of(viewpoint);
+    let is_factored = |i: &usize| spheres[*i].radius() <= viewpoint.extent();
+    let (factored, anchored): (Vec<usize>, Vec<usize>) = (0..spheres.len()).partition(is_factored);
+
+    let mut packed: Box<layout::Scene> = bytemuck::zeroed_box();
+    pack_camera(&mut packed, scene, &units);
+    let order = factored.iter().map(|&i| (i, true)).chain(anchored.iter().map(|&i| (i, false)));
+    packed.start = NO_SPHERE;
+    for (place, (index, factored)) in order.enumerate() {
+        let inside = viewpoint.inside()[index];
+        packed.spheres[place] = pack_sphere(&spheres[index], index, factored, inside, &units);
+        if viewpoint.start() == Some(index) {
+            packed.start = word(place);
+        }
+    }
+    packed.factored_count = word(factored.len());
+    packed.sphere_count = word(spheres.len());
+    packed.bounces = scene.settings().bounces();
+    packed.seed = scene.settings().seed();
+    packed.film_shift = scale.shift();
+    packed.bound_bits = scale.bound().to_bits();
+    Ok(Packed { scene: packed, factored: factored.len(), anchored: anchored.len() })
+}
+
+fn pack_camera(packed: &mut layout::Scene, scene: &Scene, units: &KernelUnits) {
+    let (camera, size) = (scene.camera(), scene.size());
+    let half_height = (camera.vertical_fov() / 2.0).tan();
+    let half_width = half_height * f64::from(size.width()) / f64::from(size.height());
+    packed.origin = floats(units.point(camera.position()));
+    packed.forward = floats(camera.forward());
+    packed.right = floats(half_width * camera.right());
+    packed.up = floats(half_height * camera.up());
+    packed.width = size.width();
+    packed.height = size.height();
+}
+
+fn pack_sphere(
+    sphere: &Sphere,
+    index: usize,
+    factored: bool,
+    inside: bool,
+    units: &KernelUnits,
+) -> layout::Sphere {
+    let (color, exponent, kind) = match sphere.surface() {
+        Surface::Emitter(radiance) => (radiance.rgb(), 0.0, layout::KIND_EMITTER),
+        Surface::Diffuse(albedo) => (albedo.rgb(), 0.0, layout::KIND_DIFFUSE),
+        Surface::Glossy(albedo, n) => (albedo.rgb(), n.get(), layout::KIND_GLOSSY),
+    };
+    let (center, radius) = (units.point(sphere.center()), units.length(sphere.radius()));
+    let (position, size, offset) = if factored {
+        (center, radius, 0.0)
+    } else {
+        // F(p) = (|p - c|² - R²)/2R at the focus, p = 0: gradient -c/R and value
+        // (|c|² - R²)/2R, factored so that it does not cancel for a far centre.
+        let distance = center.length();
+        (-center / radius, 1.0 / radius, (distance - radius) * (distance + radius) / (2.0 * radius))
+    };
+    layout::Sphere {
+        position: floats(position),
+        size: float(size),
+        color: floats(color),
+        exponent: float(exponent),
+        offset: float(offset),
+        index: word(index),
+        kind,
+        inside: u32::from(inside),
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the device computes in f32")]
+fn float(x: f64) -> f32 {
+    x as f32
+}
+
+fn floats(v: DVec3) -> [f32; 3] {
+    v.to_array().map(float)
+}
+
+fn word(count: usize) -> u32 {
+    u32::try_from(count).expect("at most SPHERE_CAPACITY spheres")
+}
