@@ -1,7 +1,7 @@
 //! What a scene calls for, decided once; the kernel is composed of nothing else.
 
-use crate::viewpoint::Viewpoint;
 use crate::scene::{Scene, Surface};
+use crate::viewpoint::Viewpoint;
 
 /// The effects that a scene calls for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,8 @@ impl Effects {
     /// Derives the effects from a scene.
     #[must_use]
     pub fn of(scene: &Scene, viewpoint: &Viewpoint) -> Self {
-        let any = |wanted: fn(&Surface) -> bool| scene.spheres().iter().any(|s| wanted(&s.surface()));
+        let any =
+            |wanted: fn(&Surface) -> bool| scene.spheres().iter().any(|s| wanted(&s.surface()));
         Self {
             diffuse: any(|s| matches!(s, Surface::Diffuse(_))),
             glossy: any(|s| matches!(s, Surface::Glossy(..))),

@@ -1,8 +1,14 @@
 pub mod bound;
+pub mod cli;
+pub mod cpu;
 pub mod effects;
+pub mod estimate;
 pub mod film;
 pub mod gpu;
 pub mod kernel;
+pub mod render;
+pub mod report;
 pub mod scene;
 pub mod tracer;
+pub mod verify;
 pub mod viewpoint;

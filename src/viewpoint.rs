@@ -101,7 +101,8 @@ fn bounds(scene: &Scene) -> (DVec3, DVec3) {
         let outward = (middle - sphere.center()).try_normalize().unwrap_or(DVec3::X);
         let surface = sphere.center() + sphere.radius() * outward;
         let reach = (high - low).length() / 2.0 + surface.distance(middle);
-        let (l, h) = if sphere.radius() <= 2.0 * reach { whole(sphere) } else { (surface, surface) };
+        let (l, h) =
+            if sphere.radius() <= 2.0 * reach { whole(sphere) } else { (surface, surface) };
         (low, high) = (low.min(l), high.max(h));
     }
     let extent = (high - low).length() / 2.0;

@@ -108,9 +108,8 @@ impl Film {
     /// If size or scale differ, samples overlap, or the sums have no room left; the
     /// film is then unchanged.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
-        let differs = |field, ours: String, theirs: String| {
-            Err(FilmError::Differs { field, ours, theirs })
-        };
+        let differs =
+            |field, ours: String, theirs: String| Err(FilmError::Differs { field, ours, theirs });
         if self.size != other.size {
             let text = |s: ImageSize| format!("{}x{}", s.width(), s.height());
             return differs("size", text(self.size), text(other.size));
@@ -134,15 +133,32 @@ pub fn sums(words: &PixelWords) -> [u128; 4] {
     [join(&words[0..3]), join(&words[3..6]), join(&words[6..9]), join(&words[9..13])]
 }
 
-/// Adds one sample, already checked against its bound, to a pixel.
-pub fn add_sample(words: &mut PixelWords, rgb: [f32; 3], scale: SampleScale) {
-    let channels = rgb.map(|x| to_fixed(x, scale.shift()));
-    let mut totals = sums(words);
-    for (total, x) in totals.iter_mut().zip(channels) {
-        *total += u128::from(x);
+/// The sums of one pixel as integers while many samples are added: taking the words
+/// apart and joining them costs more than adding.
+#[derive(Debug, Clone, Copy)]
+pub struct PixelSums([u128; 4]);
+
+impl PixelSums {
+    /// Starts from what a pixel holds.
+    #[must_use]
+    pub fn of(words: &PixelWords) -> Self {
+        Self(sums(words))
     }
-    totals[3] += square(luminance(channels));
-    *words = split(totals);
+
+    /// Adds one sample, already checked against its bound.
+    pub fn add(&mut self, rgb: [f32; 3], scale: SampleScale) {
+        let channels = rgb.map(|x| to_fixed(x, scale.shift()));
+        for (total, x) in self.0.iter_mut().zip(channels) {
+            *total += u128::from(x);
+        }
+        self.0[3] += square(luminance(channels));
+    }
+
+    /// The words to be stored.
+    #[must_use]
+    pub fn words(self) -> PixelWords {
+        split(self.0)
+    }
 }
 
 fn add_words(ours: &mut PixelWords, theirs: &PixelWords) {

@@ -48,7 +48,11 @@ pub(super) fn allocate(gpu: &Gpu, size: ImageSize) -> Result<Vec<Band>, TraceErr
 }
 
 /// Copies the bands, in order, over `pixels`.
-pub(super) fn read(gpu: &Gpu, bands: &[&Band], pixels: &mut [PixelWords]) -> Result<(), TraceError> {
+pub(super) fn read(
+    gpu: &Gpu,
+    bands: &[&Band],
+    pixels: &mut [PixelWords],
+) -> Result<(), TraceError> {
     let largest = bands.iter().map(|band| band.buffer.size()).max().unwrap_or(0);
     let pixel_bytes = BYTES_PER_PIXEL;
     let piece = largest.min((STAGING_BYTES / pixel_bytes) * pixel_bytes);
@@ -94,7 +98,8 @@ fn read_piece(
     target: &mut [u8],
 ) -> Result<(), TraceError> {
     let bytes = target.len() as u64;
-    let mut encoder = gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder =
+        gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     encoder.copy_buffer_to_buffer(buffer, offset, staging, 0, bytes);
     encoder.map_buffer_on_submit(staging, wgpu::MapMode::Read, 0..bytes, |_| ());
     gpu.run(encoder)?;

@@ -56,7 +56,11 @@ impl<'gpu> Probe<'gpu> {
     ///
     /// # Errors
     /// If the device fails.
-    pub fn add_to_film(&self, film: &[PixelWords], rows: &[Row]) -> Result<Vec<PixelWords>, TraceError> {
+    pub fn add_to_film(
+        &self,
+        film: &[PixelWords],
+        rows: &[Row],
+    ) -> Result<Vec<PixelWords>, TraceError> {
         let words = self.storage(bytemuck::cast_slice(film));
         let input = self.storage(bytemuck::cast_slice(rows));
         self.dispatch("probe_film", &[(0, &self.scene), (2, &words), (4, &input)], rows.len())?;

@@ -1,16 +1,14 @@
 //! Traces on a device: one invocation per pixel sample, sums in bands of the film.
 
 use super::bands::{self, Band};
-use super::device::{Adapter, Gpu};
+use super::device::Gpu;
 use super::pace::Pace;
 use crate::bound::sample_scale;
 use crate::effects::Effects;
 use crate::film::{Film, FilmError, SampleRanges, SampleScale};
 use crate::kernel::{self, Kernel, Nearest, Tile, layout};
 use crate::scene::{ImageSize, Scene};
-use crate::tracer::{
-    Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer,
-};
+use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
 use crate::viewpoint::Viewpoint;
 use std::ops::Range;
 use std::time::Instant;
@@ -39,11 +37,11 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Opens the adapter and puts the scene there, with the kernel that the scene calls for.
+    /// Puts a scene on a device, with the kernel that the scene calls for.
     ///
     /// # Errors
-    /// If the device cannot be opened, or scene or picture do not fit it.
-    pub fn new(scene: &Scene, adapter: &Adapter) -> Result<Self, TraceError> {
+    /// If scene or picture do not fit the device.
+    pub fn new(scene: &Scene, gpu: Gpu) -> Result<Self, TraceError> {
         let viewpoint = Viewpoint::of(scene);
         let scale = sample_scale(scene);
         let packed = kernel::pack(scene, &viewpoint, scale)
@@ -54,22 +52,21 @@ impl GpuTracer {
             tile: Tile::of(scene.size()),
         };
         check_loops(&kernel, &packed.scene)?;
-        Self::with_kernel(scene, adapter, &packed.scene, &kernel.wgsl(), kernel.tile)
+        Self::with_kernel(scene, gpu, &packed.scene, &kernel.wgsl(), kernel.tile)
     }
 
     /// Puts a packed scene and the text of a kernel on the device; the tests use it to
     /// run kernels that are wrong on purpose.
     ///
     /// # Errors
-    /// If the device cannot be opened, or kernel or picture do not fit it.
+    /// If kernel or picture do not fit the device.
     pub fn with_kernel(
         scene: &Scene,
-        adapter: &Adapter,
+        gpu: Gpu,
         packed: &layout::Scene,
         wgsl: &str,
         tile: Tile,
     ) -> Result<Self, TraceError> {
-        let gpu = Gpu::open(adapter)?;
         let device = gpu.device();
         let pipeline = pipeline(device, wgsl);
         gpu.check()?;
@@ -261,11 +258,7 @@ fn bind(
             resource: buffer.as_entire_binding(),
         })
         .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &entries,
-    })
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
 fn least(a: u64, b: u64) -> u32 {

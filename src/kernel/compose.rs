@@ -100,7 +100,8 @@ impl Kernel {
 
     /// Everything up to `trace`: what the renderer and the probe share.
     fn tracing(&self) -> String {
-        let side = if self.effects.interior { fragment!("interior") } else { fragment!("exterior") };
+        let side =
+            if self.effects.interior { fragment!("interior") } else { fragment!("exterior") };
         let scatter = match (self.effects.diffuse, self.effects.glossy) {
             (true, true) => fragment!("scatter_both"),
             (false, true) => fragment!("scatter_glossy"),
@@ -164,8 +165,8 @@ pub fn probe_source() -> String {
 /// # Errors
 /// naga's message, with the place in the source.
 pub fn validate(source: &str) -> Result<naga::Module, String> {
-    let module = naga::front::wgsl::parse_str(source)
-        .map_err(|error| error.emit_to_string(source))?;
+    let module =
+        naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
         naga::valid::Capabilities::empty(),

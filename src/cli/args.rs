@@ -1,0 +1,194 @@
+//! Arguments, as typed.
+
+use crate::scene::{Estimator, ImageSize, MAX_SPP};
+use clap::{Args, Parser, Subcommand};
+use std::num::NonZeroUsize;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::Duration;
+
+/// A headless path tracer for scenes of spheres that states its own error.
+///
+/// Exit codes: 0 done; 1 a check failed; 2 the input or the machine does not allow it;
+/// 130 interrupted, with what was rendered so far written.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 100)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Renders a scene to EXR and PNG.
+    Render(RenderArgs),
+    /// Checks this machine's device against the f64 reference; exits 1 if it disagrees.
+    Verify(VerifyArgs),
+    /// Lists what can render here.
+    Devices,
+}
+
+impl Command {
+    pub fn threads(&self) -> Option<NonZeroUsize> {
+        match self {
+            Self::Render(args) => args.common.threads,
+            Self::Verify(args) => args.common.threads,
+            Self::Devices => None,
+        }
+    }
+}
+
+/// What every command on a scene takes.
+#[derive(Debug, Args)]
+pub(super) struct CommonArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
+    /// Samples per pixel; default: the scene's [render] spp, or 256.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SPP))]
+    pub spp: Option<u64>,
+    /// Seed of the random numbers; default: the scene's, or 0.
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u32>,
+    /// Estimator; this version has "implicit".
+    #[arg(long, value_name = "E")]
+    pub estimator: Option<Estimator>,
+    /// Most scatterings of one path; default: the scene's, or 2.
+    #[arg(long, value_name = "K")]
+    pub bounces: Option<u32>,
+    /// Picture size in pixels; default: the scene's.
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<ImageSize>,
+    /// What renders: auto (a hardware GPU, else software Vulkan, else the CPU twin), gpu
+    /// (any adapter), cpu (the f64 twin), or part of an adapter's name.
+    #[arg(long, value_name = "WHAT", default_value = "auto")]
+    pub device: DeviceChoice,
+    /// Threads of the CPU twin and of software Vulkan; default: all cores.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Neither progress nor messages on stderr, errors excepted.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Results on stdout as one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArgs {
+    #[command(flatten)]
+    pub common: CommonArgs,
+    /// Output file, .exr or .png; may be given more than once. Default: SCENE.exr and
+    /// SCENE.png in the current folder.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Sample indices A..B, half-open, from 0 to 2^56; a part of a render.
+    #[arg(long, value_name = "A..B", value_parser = parse_samples, conflicts_with = "spp")]
+    pub samples: Option<Range<u64>>,
+    /// Stop after this long, such as 30s or 5m.
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    pub time: Option<Duration>,
+    /// Brightens the PNG by this many stops.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true,
+          value_parser = parse_exposure)]
+    pub exposure: f64,
+    /// Replace a film even if it holds more samples.
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArgs {
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// What should render.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum DeviceChoice {
+    Auto,
+    Gpu,
+    Cpu,
+    Named(String),
+}
+
+impl FromStr for DeviceChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => Ok(Self::Auto),
+            "gpu" => Ok(Self::Gpu),
+            "cpu" => Ok(Self::Cpu),
+            "" => Err("expected auto, gpu, cpu or part of an adapter's name".to_owned()),
+            name => Ok(Self::Named(name.to_owned())),
+        }
+    }
+}
+
+fn parse_size(text: &str) -> Result<ImageSize, String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let (width, height) =
+        sides.ok_or("expected WIDTHxHEIGHT in pixels, such as 640x480".to_owned())?;
+    ImageSize::new(width, height).map_err(|error| format!("each side must be {error}"))
+}
+
+fn parse_samples(text: &str) -> Result<Range<u64>, String> {
+    let ends = text.split_once("..").and_then(|(a, b)| Some(a.parse().ok()?..b.parse().ok()?));
+    match ends {
+        Some(range) if range.start < range.end => Ok(range),
+        Some(_) => Err("the range is empty; the end must be larger than the start".to_owned()),
+        None => Err("expected A..B with whole numbers, such as 0..256".to_owned()),
+    }
+}
+
+fn parse_time(text: &str) -> Result<Duration, String> {
+    match humantime::parse_duration(text) {
+        Ok(time) if !time.is_zero() => Ok(time),
+        Ok(_) => Err("expected a time longer than zero".to_owned()),
+        Err(_) => Err("expected a time with its unit, such as 30s, 5m or 1h 30m".to_owned()),
+    }
+}
+
+fn parse_exposure(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
+        _ => Err("expected a number of stops from -100 to 100".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cli, parse_samples, parse_size, parse_time};
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes() {
+        let size = parse_size("640x480").expect("a size");
+        assert_eq!((size.width(), size.height()), (640, 480));
+        for bad in ["640", "640x", "x480", "0x480", "640x65536", "-1x5", "6 x 5", "1x2x3"] {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn sample_ranges() {
+        assert_eq!(parse_samples("3..17"), Ok(3..17));
+        for bad in ["3", "..17", "3..", "5..5", "7..5", "a..b", "-1..5", "3..=5"] {
+            assert!(parse_samples(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn times() {
+        assert_eq!(parse_time("90s").map(|t| t.as_secs()), Ok(90));
+        for bad in ["30", "0s", "s", "-3s", "soon"] {
+            assert!(parse_time(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Which device renders.
+
+use super::args::DeviceChoice;
+use super::{Refusal, refuse};
+use crate::cpu::CpuTracer;
+use crate::gpu::{Adapter, Gpu, GpuTracer, adapters};
+use crate::scene::Scene;
+use crate::tracer::{Description, TraceError, Tracer};
+use std::num::NonZeroUsize;
+
+/// A device that was found to open.
+pub(super) enum Chosen {
+    Adapter(Adapter),
+    Twin(Option<NonZeroUsize>),
+}
+
+impl Chosen {
+    /// A tracer of the scene on this device.
+    pub fn tracer(&self, scene: &Scene) -> Result<Box<dyn Tracer>, TraceError> {
+        Ok(match self {
+            Self::Adapter(adapter) => Box::new(GpuTracer::new(scene, Gpu::open(adapter)?)?),
+            Self::Twin(threads) => Box::new(CpuTracer::new(scene, *threads)?),
+        })
+    }
+
+    /// Whether it computes on this machine's processor.
+    pub fn on_processor(&self) -> bool {
+        match self {
+            Self::Adapter(adapter) => adapter.is_software(),
+            Self::Twin(_) => true,
+        }
+    }
+
+    /// What it is, if it is a device beside the twin.
+    pub fn adapter(&self) -> Option<Description> {
+        match self {
+            Self::Adapter(adapter) => Some(adapter.describe()),
+            Self::Twin(_) => None,
+        }
+    }
+}
+
+/// Chooses as the user asked: `auto` takes the first adapter that opens (hardware comes
+/// before software), and the CPU twin where none does.
+pub(super) fn choose(
+    choice: &DeviceChoice,
+    threads: Option<NonZeroUsize>,
+) -> Result<Chosen, Refusal> {
+    match choice {
+        DeviceChoice::Cpu => Ok(Chosen::Twin(threads)),
+        DeviceChoice::Auto => {
+            Ok(first_that_opens(adapters()).map_or(Chosen::Twin(threads), Chosen::Adapter))
+        }
+        DeviceChoice::Gpu => match first_that_opens(adapters()) {
+            Some(adapter) => Ok(Chosen::Adapter(adapter)),
+            None => refuse(
+                "no Vulkan, Metal or DX12 device here; install a graphics driver (on Debian and \
+                 Ubuntu mesa-vulkan-drivers has one in software), or use --device cpu",
+            ),
+        },
+        DeviceChoice::Named(name) => named(name),
+    }
+}
+
+fn first_that_opens(adapters: Vec<Adapter>) -> Option<Adapter> {
+    adapters.into_iter().find(|adapter| Gpu::open(adapter).is_ok())
+}
+
+fn named(name: &str) -> Result<Chosen, Refusal> {
+    let all = adapters();
+    let wanted = name.to_lowercase();
+    let names: Vec<String> = all.iter().map(|adapter| adapter.name().to_owned()).collect();
+    match all.into_iter().find(|adapter| adapter.name().to_lowercase().contains(&wanted)) {
+        Some(adapter) => Ok(Chosen::Adapter(adapter)),
+        None if names.is_empty() => {
+            refuse(format_args!("no device named \"{name}\"; there is only --device cpu here"))
+        }
+        None => refuse(format_args!(
+            "no device named \"{name}\"; there are: {}, and --device cpu",
+            names.join(", ")
+        )),
+    }
+}

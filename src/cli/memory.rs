@@ -1,0 +1,47 @@
+//! Whether a picture fits into memory, asked before anything is allocated.
+
+use super::{Refusal, refuse};
+use crate::film::BYTES_PER_PIXEL;
+use crate::scene::ImageSize;
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+
+/// Bytes per pixel of the developed picture and of the files on their way out: four
+/// `f32` channels twice, and the PNG.
+const PICTURE_BYTES: u64 = 2 * 16 + 3;
+
+/// Bytes of this machine's memory that a render of `size` takes. A tracer that runs on
+/// this machine's processor has its film here, besides the copy that is developed.
+pub(super) fn needed(size: ImageSize, on_processor: bool) -> u64 {
+    let films = if on_processor { 2 } else { 1 };
+    u64::from(size.pixels()) * (films * BYTES_PER_PIXEL + PICTURE_BYTES)
+}
+
+/// Refuses a picture that does not fit.
+pub(super) fn check(size: ImageSize, needed: u64) -> Result<(), Refusal> {
+    let available = available();
+    if needed <= available {
+        return Ok(());
+    }
+    let (width, height) = (size.width(), size.height());
+    refuse(format_args!(
+        "{width}x{height} pixels need {} of memory, {} are available; render a smaller --size",
+        gigabytes(needed),
+        gigabytes(available)
+    ))
+}
+
+/// A number of bytes for a message.
+#[expect(clippy::cast_precision_loss, reason = "shown with two decimals")]
+pub(super) fn gigabytes(bytes: u64) -> String {
+    format!("{:.2} GB", bytes as f64 / 1e9)
+}
+
+/// Free memory of this machine or of the container; where the system does not say, no
+/// picture is refused.
+fn available() -> u64 {
+    let refresh = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    System::new_with_specifics(refresh).map_or(u64::MAX, |system| {
+        let limit = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
+        system.available_memory().min(limit)
+    })
+}

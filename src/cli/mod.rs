@@ -1,0 +1,78 @@
+//! The command line: what the user asked for, turned into calls of the library and
+//! into messages. Results go to stdout; progress and messages to stderr.
+
+mod args;
+mod choose;
+mod devices;
+mod environment;
+mod interrupt;
+mod memory;
+mod output;
+mod progress;
+mod render;
+mod setup;
+mod verify;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+/// Everything was done.
+const DONE: u8 = 0;
+/// A check failed or a target was not reached.
+const FAILED: u8 = 1;
+/// The input or the machine does not allow it.
+const REFUSED: u8 = 2;
+/// Stopped by Ctrl-C or SIGTERM.
+const INTERRUPTED: u8 = 130;
+
+/// Why a command ended without a result: a message for the user.
+#[derive(Debug)]
+struct Refusal(String);
+
+impl<E: std::error::Error> From<E> for Refusal {
+    fn from(error: E) -> Self {
+        Self(format!("error: {error}"))
+    }
+}
+
+/// A refusal in words of our own.
+fn refuse<T>(message: impl std::fmt::Display) -> Result<T, Refusal> {
+    Err(Refusal(format!("error: {message}")))
+}
+
+/// Runs the program and says how it ended.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    environment::prepare(cli.command.threads());
+    report_panics();
+    let ended = std::panic::catch_unwind(|| match &cli.command {
+        Command::Render(args) => render::run(args),
+        Command::Verify(args) => verify::run(args),
+        Command::Devices => Ok(devices::run()),
+    });
+    match ended {
+        Ok(Ok(code)) => ExitCode::from(code),
+        Ok(Err(Refusal(message))) => {
+            eprintln!("{message}");
+            ExitCode::from(REFUSED)
+        }
+        Err(_) => ExitCode::from(REFUSED),
+    }
+}
+
+/// A panic is a mistake of ours; the user gets one line that says so, and where.
+fn report_panics() {
+    std::panic::set_hook(Box::new(|panic| {
+        let place = panic.location().map(ToString::to_string).unwrap_or_default();
+        let cause = panic.payload_as_str().unwrap_or("unknown");
+        eprintln!("error: this is a mistake in candor, at {place}: {cause}");
+    }));
+}
+
+/// Whether messages go to a person's terminal.
+fn on_terminal() -> bool {
+    std::io::stderr().is_terminal()
+}

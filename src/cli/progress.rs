@@ -1,0 +1,111 @@
+//! Progress on stderr: a bar on a terminal, plain lines elsewhere, nothing if quiet.
+
+use super::on_terminal;
+use crate::render::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::time::Duration;
+
+/// Plain lines come this far apart.
+const LINE_EVERY: Duration = Duration::from_secs(10);
+
+/// Shows how far a render is.
+pub(super) struct Reporter {
+    style: Style,
+    pixels: u32,
+    planned: u64,
+    limit: Option<Duration>,
+}
+
+enum Style {
+    Quiet,
+    Bar(ProgressBar),
+    Lines { next: Duration },
+}
+
+impl Reporter {
+    /// For a render of `planned` samples of `pixels` pixels within `limit`.
+    pub fn new(quiet: bool, pixels: u32, planned: u64, limit: Option<Duration>) -> Self {
+        let style = match (quiet, on_terminal()) {
+            (true, _) => Style::Quiet,
+            (false, true) => Style::Bar(bar()),
+            (false, false) => Style::Lines { next: Duration::ZERO },
+        };
+        Self { style, pixels, planned, limit }
+    }
+
+    /// A line that stays on the screen.
+    pub fn message(&self, text: &str) {
+        match &self.style {
+            Style::Quiet => {}
+            Style::Bar(bar) => bar.println(text),
+            Style::Lines { .. } => eprintln!("{text}"),
+        }
+    }
+
+    /// Whether anybody sees the error.
+    pub fn shows_error(&self) -> bool {
+        !matches!(self.style, Style::Quiet)
+    }
+
+    /// Tells of a round.
+    pub fn observe(&mut self, progress: Progress) {
+        let (text, share) = (self.text(&progress), self.share(&progress));
+        match &mut self.style {
+            Style::Quiet => {}
+            Style::Bar(bar) => {
+                bar.set_position(share);
+                bar.set_message(text);
+            }
+            Style::Lines { next } => {
+                if progress.elapsed >= *next {
+                    eprintln!("{text}");
+                    *next = progress.elapsed + LINE_EVERY;
+                }
+            }
+        }
+    }
+
+    /// Takes the bar off the screen.
+    pub fn finish(&self) {
+        if let Style::Bar(bar) = &self.style {
+            bar.finish_and_clear();
+        }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    fn text(&self, progress: &Progress) -> String {
+        let seconds = progress.elapsed.as_secs_f64().max(1e-9);
+        let rate = progress.done as f64 * f64::from(self.pixels) / seconds;
+        let error = progress
+            .summary
+            .and_then(|summary| Some((summary.relative_error?, summary.samples)))
+            // The look may be some samples old; the error falls with their square root.
+            .map(|(error, at)| error * (at as f64 / progress.done as f64).sqrt())
+            .map_or(String::new(), |error| format!(", error {:.2} %", 100.0 * error));
+        let by_samples = seconds * (self.planned - progress.done) as f64 / progress.done as f64;
+        let by_time = self.limit.map_or(f64::INFINITY, |l| (l.as_secs_f64() - seconds).max(0.0));
+        let left = by_samples.min(by_time);
+        format!(
+            "{} spp, {:.1} Msamples/s{error}, {} left",
+            progress.done,
+            rate / 1e6,
+            humantime::format_duration(Duration::from_secs(left.ceil().min(1e9) as u64))
+        )
+    }
+
+    /// Thousandths of the render that are done.
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    fn share(&self, progress: &Progress) -> u64 {
+        let samples = progress.done as f64 / self.planned as f64;
+        let time = self.limit.map_or(0.0, |l| progress.elapsed.as_secs_f64() / l.as_secs_f64());
+        (1000.0 * samples.max(time).min(1.0)) as u64
+    }
+}
+
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
+    let style = ProgressStyle::with_template("{bar:30} {percent:>3}%  {msg}")
+        .expect("the template is a constant");
+    bar.set_style(style);
+    bar
+}

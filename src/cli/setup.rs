@@ -1,0 +1,27 @@
+//! From the scene file and the command line to the scene that is rendered.
+
+use super::args::CommonArgs;
+use super::{Refusal, on_terminal, refuse};
+use crate::scene::{self, Scene};
+
+/// Loads the scene and applies what the command line says otherwise.
+pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
+    let mut scene =
+        scene::load(&args.scene).map_err(|error| Refusal(error.render(on_terminal())))?;
+    if let Some(size) = args.size {
+        scene = scene.with_size(size);
+    }
+    let mut settings = scene.settings();
+    if let Some(spp) = args.spp {
+        settings = settings.with_spp(spp)?;
+    }
+    if let Some(bounces) = args.bounces {
+        settings = match settings.with_bounces(bounces) {
+            Ok(settings) => settings,
+            Err(allowed) => return refuse(format_args!("--bounces takes {allowed}")),
+        };
+    }
+    settings = settings.with_seed(args.seed.unwrap_or(settings.seed()));
+    settings = settings.with_estimator(args.estimator.unwrap_or(settings.estimator()));
+    Ok(scene.with_settings(settings))
+}

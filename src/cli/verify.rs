@@ -1,0 +1,140 @@
+//! `candor verify`: this machine's device against the f64 twin.
+
+use super::args::VerifyArgs;
+use super::progress::Reporter;
+use super::{DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup};
+use crate::cpu::CpuTracer;
+use crate::film::Film;
+use crate::render::{Plan, Stop, render};
+use crate::scene::Scene;
+use crate::tracer::{Description, Tracer};
+use crate::verify::{ALPHA, MAX_BIAS, Verdict, judge};
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+
+pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
+    let common = &args.common;
+    let scene = setup::load(common)?;
+    let spp = scene.settings().spp();
+    if spp < 2 {
+        return refuse("verify needs at least 2 samples per pixel");
+    }
+    let chosen = choose::choose(&common.device, common.threads)?;
+    let Some(device) = chosen.adapter() else {
+        return refuse(
+            "verify compares a device with the CPU twin, and there is no device here; install a \
+             graphics driver (on Debian and Ubuntu mesa-vulkan-drivers has one in software)",
+        );
+    };
+    memory::check(scene.size(), 3 * memory::needed(scene.size(), true))?;
+    let other_seed = scene.settings().with_seed(scene.settings().seed().wrapping_add(1));
+    let other_scene = scene.clone().with_settings(other_seed);
+    let run = Run { interrupt: interrupt::watch()?, quiet: common.quiet, spp };
+    let films = [
+        run.film("device", &scene, chosen.tracer(&scene)?)?,
+        run.film("twin", &scene, Box::new(CpuTracer::new(&scene, common.threads)?))?,
+        run.film("device, other seed", &other_scene, chosen.tracer(&other_scene)?)?,
+    ];
+    let [Some(ours), Some(twin), Some(other)] = films else { return Ok(INTERRUPTED) };
+    let verdict = judge(&ours, &twin, &other);
+    print(&verdict, &device, spp, common.json);
+    Ok(if verdict.agrees() { DONE } else { FAILED })
+}
+
+struct Run<'a> {
+    interrupt: &'a AtomicBool,
+    quiet: bool,
+    spp: u64,
+}
+
+impl Run<'_> {
+    /// Traces all samples; nothing where the user interrupted.
+    fn film(
+        &self,
+        what: &str,
+        scene: &Scene,
+        mut tracer: Box<dyn Tracer>,
+    ) -> Result<Option<Film>, Refusal> {
+        let mut reporter = Reporter::new(self.quiet, scene.size().pixels(), self.spp, None);
+        reporter.message(&format!("{what}: {}", tracer.describe().device));
+        let plan = Plan { samples: 0..self.spp, time: None };
+        let outcome =
+            render(tracer.as_mut(), &plan, self.interrupt, false, &mut |p| reporter.observe(p));
+        reporter.finish();
+        if outcome?.stop == Stop::Interrupted {
+            return Ok(None);
+        }
+        let ledger = tracer.ledger()?;
+        if ledger.count > 0 {
+            return refuse(format_args!("{} of the samples on {what} were invalid", ledger.count));
+        }
+        Ok(Some(tracer.film()?))
+    }
+}
+
+/// The `--json` object.
+#[derive(Serialize)]
+struct Json<'a> {
+    device: &'a str,
+    driver: &'a str,
+    spp: u64,
+    agrees: bool,
+    conclusive: bool,
+    image_z: f64,
+    image_p: f64,
+    tiles: usize,
+    worst_tile_z: f64,
+    worst_tile_p: f64,
+    mean_tile_z: f64,
+    rms_tile_z: f64,
+    bias: [f64; 3],
+    bias_error: [f64; 3],
+}
+
+fn print(verdict: &Verdict, device: &Description, spp: u64, json: bool) {
+    let found = &verdict.independent;
+    if json {
+        let json = Json {
+            device: &device.device,
+            driver: &device.driver,
+            spp,
+            agrees: verdict.agrees(),
+            conclusive: found.conclusive,
+            image_z: found.image.z,
+            image_p: found.image.p,
+            tiles: found.tiles,
+            worst_tile_z: found.worst.z,
+            worst_tile_p: found.worst.p,
+            mean_tile_z: found.mean_z,
+            rms_tile_z: found.rms_z,
+            bias: verdict.paired.bias,
+            bias_error: verdict.paired.error,
+        };
+        println!("{}", serde_json::to_string(&json).expect("plain values serialize"));
+        return;
+    }
+    println!("device    {} ({})", device.device, device.driver);
+    println!("samples   {spp} per pixel; deviations in standard errors, device - twin");
+    println!("image     z {:+.2}, p {:.2e}", found.image.z, found.image.p);
+    println!("tiles     largest z {:+.2}, p {:.2e}", found.worst.z, found.worst.p);
+    println!(
+        "          mean z {:+.3}, rms z {:.3}, {} tiles",
+        found.mean_z, found.rms_z, found.tiles
+    );
+    let [r, g, b] = std::array::from_fn(|c| {
+        let (bias, error) = (verdict.paired.bias[c], verdict.paired.error[c]);
+        format!("{:+.5} ± {:.5} %", 100.0 * bias, 100.0 * error)
+    });
+    println!("bias      r {r}, g {g}, b {b} (same random numbers)");
+    let reading = if !found.conclusive {
+        "too few hits to tell; use more --spp".to_owned()
+    } else if verdict.agrees() {
+        "the device agrees with the twin".to_owned()
+    } else {
+        format!(
+            "THE DEVICE DISAGREES (family-wise {ALPHA:e}, bias limit {:.1} %)",
+            100.0 * MAX_BIAS
+        )
+    };
+    println!("verdict   {reading}");
+}

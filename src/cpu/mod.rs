@@ -1,0 +1,134 @@
+//! The CPU twin: the kernel's paths once more, in `f64`, written file for file with
+//! `shaders/` and sharing nothing with it but the scene and the random integers. It
+//! is the reference that devices are verified against, and renders where there is no
+//! Vulkan at all.
+
+mod interior;
+mod material;
+mod nearest;
+pub mod rng;
+pub mod sampling;
+mod scene;
+pub mod sphere;
+mod trace;
+
+pub use rng::SampleKey;
+pub use scene::PreparedScene;
+pub use trace::trace;
+
+use crate::bound::sample_scale;
+use crate::film::{Film, PixelSums, PixelWords, SampleScale};
+use crate::scene::Scene;
+use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
+use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::num::NonZeroUsize;
+use std::ops::Range;
+
+/// Invalid samples recorded with their address; as many as on the device.
+const LEDGER_RECORDS: usize = 16;
+
+/// Traces on this machine's processor, in `f64`.
+pub struct CpuTracer {
+    scene: PreparedScene,
+    film: Film,
+    ledger: Ledger,
+    pool: ThreadPool,
+}
+
+impl CpuTracer {
+    /// Prepares a scene for `threads` threads; without a number, for as many as the
+    /// machine runs at once.
+    ///
+    /// # Errors
+    /// If the operating system refuses the threads.
+    pub fn new(scene: &Scene, threads: Option<NonZeroUsize>) -> Result<Self, TraceError> {
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads.map_or(0, NonZeroUsize::get))
+            .build()
+            .map_err(|error| TraceError::Device(format!("cannot start the threads: {error}")))?;
+        Ok(Self {
+            scene: PreparedScene::new(scene),
+            film: Film::new(scene.size(), sample_scale(scene)),
+            ledger: Ledger::default(),
+            pool,
+        })
+    }
+}
+
+impl Tracer for CpuTracer {
+    fn add_samples(&mut self, range: Range<u64>) -> Result<(), TraceError> {
+        self.film.claim(range.clone())?;
+        let (scale, pixels) = (self.film.scale(), 0..self.film.size().pixels());
+        let (scene, words) = (&self.scene, self.film.pixels_mut());
+        let invalid = self.pool.install(|| {
+            (pixels, words)
+                .into_par_iter()
+                .map(|(pixel, words)| add_to_pixel(scene, scale, pixel, range.clone(), words))
+                .reduce(Ledger::default, merge)
+        });
+        self.ledger = merge(std::mem::take(&mut self.ledger), invalid);
+        Ok(())
+    }
+
+    fn film(&mut self) -> Result<Film, TraceError> {
+        Ok(self.film.clone())
+    }
+
+    fn ledger(&mut self) -> Result<Ledger, TraceError> {
+        Ok(self.ledger.clone())
+    }
+
+    fn describe(&self) -> Description {
+        let threads = self.pool.current_num_threads();
+        let plural = if threads == 1 { "" } else { "s" };
+        Description {
+            device: format!("CPU twin (f64, {threads} thread{plural})"),
+            driver: concat!("candor ", env!("CARGO_PKG_VERSION")).to_owned(),
+            software: true,
+        }
+    }
+}
+
+/// Adds the samples `range` of one pixel to its words; returns those that are invalid.
+fn add_to_pixel(
+    scene: &PreparedScene,
+    scale: SampleScale,
+    pixel: u32,
+    range: Range<u64>,
+    words: &mut PixelWords,
+) -> Ledger {
+    let mut invalid = Ledger::default();
+    let mut sums = PixelSums::of(words);
+    for index in range {
+        let radiance = trace(scene, SampleKey { pixel, index }).as_vec3().to_array();
+        if radiance == [0.0; 3] {
+            continue;
+        }
+        if scale.admits(radiance) {
+            sums.add(radiance, scale);
+        } else {
+            record_invalid(&mut invalid, pixel, index);
+        }
+    }
+    *words = sums.words();
+    invalid
+}
+
+fn record_invalid(ledger: &mut Ledger, pixel: u32, index: u64) {
+    ledger.count += 1;
+    if ledger.records.len() < LEDGER_RECORDS {
+        let reason = InvalidReason::OutOfBounds;
+        ledger.records.push(InvalidSample { pixel, index, reason });
+    }
+}
+
+/// Both ledgers together. Of the records the smallest addresses stay, so that they do
+/// not depend on which thread came first.
+fn merge(mut ours: Ledger, theirs: Ledger) -> Ledger {
+    ours.count += theirs.count;
+    ours.records.extend(theirs.records);
+    ours.records.sort_unstable_by_key(|record| (record.pixel, record.index));
+    ours.records.truncate(LEDGER_RECORDS);
+    ours
+}

@@ -1,0 +1,80 @@
+//! What the twin traces: the validated scene in its own units, with what a path asks
+//! for laid out for it. It shares no packing with the kernel, so that a mistake in
+//! `src/kernel` cannot hide in both.
+
+use crate::scene::{Scene, Surface};
+use crate::viewpoint::Viewpoint;
+use glam::DVec3;
+
+/// A scene ready to be traced.
+#[derive(Debug, Clone)]
+pub struct PreparedScene {
+    pub(super) camera: Pinhole,
+    pub(super) bounces: u32,
+    pub(super) seed: u32,
+    /// Sphere that the camera stands on.
+    pub(super) start: Option<usize>,
+    /// In the order of the scene file.
+    pub(super) spheres: Vec<PreparedSphere>,
+}
+
+/// The camera: `right` and `up` reach from the picture's centre to its edges on the
+/// plane at distance 1.
+#[derive(Debug, Clone)]
+pub(super) struct Pinhole {
+    pub(super) origin: DVec3,
+    pub(super) forward: DVec3,
+    pub(super) right: DVec3,
+    pub(super) up: DVec3,
+    pub(super) width: u32,
+    pub(super) height: u32,
+}
+
+/// A sphere and the side from which it is seen.
+#[derive(Debug, Clone)]
+pub(super) struct PreparedSphere {
+    pub(super) center: DVec3,
+    pub(super) radius: f64,
+    /// Whether paths see only its inner side.
+    pub(super) inside: bool,
+    pub(super) surface: Surface,
+}
+
+impl PreparedScene {
+    /// Prepares a scene.
+    #[must_use]
+    pub fn new(scene: &Scene) -> Self {
+        let viewpoint = Viewpoint::of(scene);
+        let sides = scene.spheres().iter().zip(viewpoint.inside());
+        Self {
+            camera: Pinhole::of(scene),
+            bounces: scene.settings().bounces(),
+            seed: scene.settings().seed(),
+            start: viewpoint.start(),
+            spheres: sides
+                .map(|(sphere, &inside)| PreparedSphere {
+                    center: sphere.center(),
+                    radius: sphere.radius(),
+                    inside,
+                    surface: sphere.surface(),
+                })
+                .collect(),
+        }
+    }
+}
+
+impl Pinhole {
+    fn of(scene: &Scene) -> Self {
+        let (camera, size) = (scene.camera(), scene.size());
+        let half_height = (camera.vertical_fov() / 2.0).tan();
+        let half_width = half_height * f64::from(size.width()) / f64::from(size.height());
+        Self {
+            origin: camera.position(),
+            forward: camera.forward(),
+            right: half_width * camera.right(),
+            up: half_height * camera.up(),
+            width: size.width(),
+            height: size.height(),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! The estimate of one pixel from its exact sums.
+
+use crate::film::{Film, LUMINANCE_WEIGHTS, PixelWords, sums};
+
+/// Mean radiance of a pixel and what is known of its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PixelEstimate {
+    /// Mean radiance per channel, linear Rec. 709.
+    pub rgb: [f64; 3],
+    /// Mean luminance.
+    pub luminance: f64,
+    /// Variance of one sample's luminance (unbiased, N - 1); NaN with fewer than two samples.
+    pub variance: f64,
+    /// Effective number of contributing samples, (ΣY)²/ΣY² (Kish 1965): the number of
+    /// hits where all hits are alike.
+    pub hits: f64,
+}
+
+impl PixelEstimate {
+    /// Standard error of the mean luminance after `samples` samples; NaN with fewer than two.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "at most 2^32 samples")]
+    pub fn standard_error(&self, samples: u64) -> f64 {
+        (self.variance / samples as f64).sqrt()
+    }
+
+    /// Whether no sample has contributed yet, so that the error is unproven, not zero.
+    #[must_use]
+    pub fn is_unproven(&self) -> bool {
+        self.hits == 0.0
+    }
+}
+
+/// Estimates one pixel of a film from its words.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "from exact integers to the nearest f64")]
+pub fn estimate(film: &Film, words: &PixelWords) -> PixelEstimate {
+    let samples = film.samples().count();
+    let [r, g, b, squares] = sums(words);
+    let step = film.scale().step();
+    let n = samples as f64;
+    let mean = |sum: u128| if samples == 0 { 0.0 } else { sum as f64 * step / n };
+    // ΣY·2¹⁶, exact: the luminance of the sums.
+    let weighted: u128 =
+        [r, g, b].iter().zip(LUMINANCE_WEIGHTS).map(|(&sum, w)| sum * u128::from(w)).sum();
+    let sum = weighted as f64 / 65_536.0 * step;
+    let sum_of_squares = squares as f64 * 4_294_967_296.0 * step * step;
+    PixelEstimate {
+        rgb: [mean(r), mean(g), mean(b)],
+        luminance: if samples == 0 { 0.0 } else { sum / n },
+        variance: variance(samples, weighted, squares) * step * step,
+        hits: if weighted == 0 { 0.0 } else { sum * (sum / sum_of_squares) },
+    }
+}
+
+/// Sample variance in squared film steps: (N·ΣY² - (ΣY)²)/(N(N-1)), the difference
+/// formed exactly, in 256 bits, so that a constant sample has variance exactly 0.
+///
+/// The film truncates Y and Y²/2³² downwards, so the difference can come out below
+/// zero by less than N²·2³² steps², which is then 0 (DESIGN.md, "The exact film").
+#[expect(clippy::cast_precision_loss, reason = "after the exact difference")]
+fn variance(samples: u64, weighted: u128, squares: u128) -> f64 {
+    if samples < 2 {
+        return f64::NAN;
+    }
+    // Both sides times 2³²: N·Σ⌊Y²/2³²⌋·2⁶⁴ and (ΣY·2¹⁶)².
+    let (high, low) = multiply(squares, u128::from(samples));
+    let minuend = ((high << 64) | (low >> 64), low << 64);
+    let subtrahend = multiply(weighted, weighted);
+    if minuend <= subtrahend {
+        return 0.0;
+    }
+    let (low, borrow) = minuend.1.overflowing_sub(subtrahend.1);
+    let high = minuend.0 - subtrahend.0 - u128::from(borrow);
+    let difference = high as f64 * 2.0_f64.powi(128) + low as f64;
+    let n = samples as f64;
+    difference / 4_294_967_296.0 / (n * (n - 1.0))
+}
+
+/// The 256-bit product as (high, low).
+fn multiply(a: u128, b: u128) -> (u128, u128) {
+    const HALF: u128 = u64::MAX as u128;
+    let (a1, a0, b1, b0) = (a >> 64, a & HALF, b >> 64, b & HALF);
+    let middle = a1 * b0 + ((a0 * b0) >> 64);
+    let cross = (middle & HALF) + a0 * b1;
+    (a1 * b1 + (middle >> 64) + (cross >> 64), a.wrapping_mul(b))
+}

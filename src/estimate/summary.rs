@@ -1,0 +1,68 @@
+//! The error of a whole picture, without a reference.
+
+use super::pixel::estimate;
+use crate::film::Film;
+
+/// A film step larger than this fraction of a pixel's mean is reported.
+const COARSE: f64 = 1e-6;
+
+/// What a film says about its picture as a whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summary {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Mean luminance of the picture.
+    pub luminance: f64,
+    /// Relative RMS error: √(mean over pixels of σ²/n) ÷ mean luminance. `None` with
+    /// fewer than two samples, or where every pixel is black and that is not proven.
+    pub relative_error: Option<f64>,
+    /// Standard error of the mean luminance.
+    pub luminance_error: Option<f64>,
+    /// Pixels to which no sample has contributed yet: their error is unproven, not zero.
+    pub unproven_pixels: u64,
+    /// Pixels whose film step exceeds 1e-6 of their mean.
+    pub coarse_pixels: u64,
+}
+
+impl Summary {
+    /// The summary of a scene without lights: exactly zero, and proven.
+    #[must_use]
+    pub fn of_darkness(samples: u64) -> Self {
+        Self {
+            samples,
+            luminance: 0.0,
+            relative_error: Some(0.0),
+            luminance_error: Some(0.0),
+            unproven_pixels: 0,
+            coarse_pixels: 0,
+        }
+    }
+}
+
+/// Summarizes a film of a scene that has lights.
+#[must_use]
+#[expect(clippy::cast_precision_loss, reason = "counts of pixels and samples")]
+pub fn summarize(film: &Film) -> Summary {
+    let samples = film.samples().count();
+    let pixels = film.pixels().len() as f64;
+    let mut luminance = 0.0;
+    let mut variance = 0.0;
+    let (mut unproven_pixels, mut coarse_pixels) = (0, 0);
+    for words in film.pixels() {
+        let pixel = estimate(film, words);
+        luminance += pixel.luminance / pixels;
+        variance += pixel.variance / samples as f64 / pixels;
+        unproven_pixels += u64::from(pixel.is_unproven());
+        let coarse = film.scale().step() > COARSE * pixel.luminance;
+        coarse_pixels += u64::from(coarse && !pixel.is_unproven());
+    }
+    let measured = samples >= 2 && luminance > 0.0;
+    Summary {
+        samples,
+        luminance,
+        relative_error: measured.then(|| variance.sqrt() / luminance),
+        luminance_error: measured.then(|| (variance / pixels).sqrt()),
+        unproven_pixels,
+        coarse_pixels,
+    }
+}

@@ -1,0 +1,60 @@
+//! Files that appear whole or not at all: a temporary file beside the target, flushed
+//! to the disk, then renamed over it.
+
+use super::FileError;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// Checks that files can be made in the folder of `path`, before work starts.
+///
+/// # Errors
+/// If the folder is missing or not writable, or `path` is a folder itself.
+pub fn check_writable(path: &Path) -> Result<(), FileError> {
+    if path.is_dir() {
+        return Err(FileError::new(path, "is a folder, not a file"));
+    }
+    temporary(path).map(drop)
+}
+
+/// Writes a file by way of a temporary one in the same folder.
+///
+/// # Errors
+/// If writing fails; a file that was there is then untouched.
+pub fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), String>,
+) -> Result<(), FileError> {
+    let file = temporary(path)?;
+    let fail = |reason: String| FileError::new(path, format!("cannot be written: {reason}"));
+    let mut buffer = BufWriter::new(file.as_file());
+    write(&mut buffer).map_err(fail)?;
+    buffer.flush().map_err(|error| fail(error.to_string()))?;
+    drop(buffer);
+    file.as_file().sync_all().map_err(|error| fail(error.to_string()))?;
+    allow_reading(file.as_file());
+    file.persist(path).map_err(|error| fail(error.to_string()))?;
+    Ok(())
+}
+
+fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, FileError> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    tempfile::Builder::new()
+        .prefix(".candor-")
+        .tempfile_in(folder)
+        .map_err(|error| FileError::new(path, format!("cannot be written: {error}")))
+}
+
+/// A temporary file is private; a picture is not. Where this is refused (some network
+/// file systems), the picture stays private, which is no reason to lose it.
+#[cfg(unix)]
+fn allow_reading(file: &File) {
+    use std::os::unix::fs::PermissionsExt;
+    let _ = file.set_permissions(std::fs::Permissions::from_mode(0o644));
+}
+
+#[cfg(not(unix))]
+fn allow_reading(_: &File) {}

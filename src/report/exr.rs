@@ -1,0 +1,135 @@
+//! OpenEXR: mean radiance, its standard error, and where the picture comes from.
+
+use super::{FileError, Picture, replace};
+use crate::film::{SampleRanges, SampleScale};
+use crate::scene::SceneHash;
+use crate::tracer::Description;
+use exr::meta::MetaData;
+use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Vec2,
+    WritableImage,
+};
+use std::path::Path;
+
+/// Prefix of candor's header attributes.
+const PREFIX: &str = "candor.";
+
+/// Rec. 709 primaries and the D65 white point (ITU-R BT.709-6, table 1).
+const REC_709: Chromaticities = Chromaticities {
+    red: Vec2(0.64, 0.33),
+    green: Vec2(0.30, 0.60),
+    blue: Vec2(0.15, 0.06),
+    white: Vec2(0.3127, 0.3290),
+};
+
+/// Where a picture comes from: everything that its samples depend on, and what they cost.
+#[derive(Debug, Clone)]
+pub struct Provenance {
+    /// File name of the scene, without folders.
+    pub scene_file: String,
+    /// Hash of what the scene means.
+    pub scene_hash: SceneHash,
+    /// Estimator.
+    pub estimator: &'static str,
+    /// Most scatterings of one path.
+    pub bounces: u32,
+    /// Seed of the random numbers.
+    pub seed: u32,
+    /// Samples of every pixel.
+    pub samples: SampleRanges,
+    /// Film scale.
+    pub scale: SampleScale,
+    /// Device and driver.
+    pub tracer: Description,
+    /// Time spent tracing, in seconds.
+    pub seconds: f64,
+    /// Invalid samples; they count as zeros.
+    pub invalid_samples: u64,
+    /// Relative RMS error of the picture, where it is known.
+    pub relative_error: Option<f64>,
+}
+
+impl Provenance {
+    fn attributes(&self) -> Vec<(&'static str, String)> {
+        let mut list = vec![
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            ("scene", self.scene_file.clone()),
+            ("sceneHash", self.scene_hash.to_string()),
+            ("estimator", self.estimator.to_owned()),
+            ("bounces", self.bounces.to_string()),
+            ("seed", self.seed.to_string()),
+            ("samples", self.samples.to_string()),
+            ("spp", self.samples.count().to_string()),
+            ("filmShift", self.scale.shift().to_string()),
+            ("device", self.tracer.device.clone()),
+            ("driver", self.tracer.driver.clone()),
+            ("seconds", format!("{:.3}", self.seconds)),
+            ("invalidSamples", self.invalid_samples.to_string()),
+        ];
+        if let Some(error) = self.relative_error {
+            list.push(("relativeError", error.to_string()));
+        }
+        list
+    }
+}
+
+/// Writes channels R, G, B and `stderr.L` with the provenance in the header.
+///
+/// # Errors
+/// If the file cannot be written; one that was there is then untouched.
+pub fn write(path: &Path, picture: &Picture, provenance: &Provenance) -> Result<(), FileError> {
+    let channel = |name: &str, values: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(values));
+    let plane = |c: usize| picture.rgb.iter().map(|rgb| rgb[c]).collect();
+    let channels = AnyChannels::sort(
+        [
+            channel("R", plane(0)),
+            channel("G", plane(1)),
+            channel("B", plane(2)),
+            channel("stderr.L", picture.luminance_error.clone()),
+        ]
+        .into_iter()
+        .collect(),
+    );
+    let mut attributes = LayerAttributes {
+        software_name: Some(Text::from(concat!("candor ", env!("CARGO_PKG_VERSION")))),
+        ..LayerAttributes::default()
+    };
+    for (name, value) in provenance.attributes() {
+        attributes.other.insert(
+            Text::from(format!("{PREFIX}{name}").as_str()),
+            AttributeValue::Text(latin(&value)),
+        );
+    }
+    let size = Vec2(picture.size.width() as usize, picture.size.height() as usize);
+    let layer = Layer::new(size, attributes, Encoding::SMALL_LOSSLESS, channels);
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = Some(REC_709);
+    replace(path, |file| image.write().to_buffered(file).map_err(|error| error.to_string()))
+}
+
+/// Header texts are Latin-1; other characters of a file or device name become '?'.
+fn latin(text: &str) -> Text {
+    let shown: String = text.chars().map(|c| if c as u32 <= 0xff { c } else { '?' }).collect();
+    Text::new_or_none(&shown).unwrap_or_else(|| Text::from("?"))
+}
+
+/// Samples per pixel of the film in `path`: 0 where there is no file, or one that
+/// candor did not write.
+///
+/// # Errors
+/// If the file cannot be opened, though it is there.
+pub fn film_samples(path: &Path) -> Result<u64, FileError> {
+    match std::fs::File::open(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(0),
+        Err(error) => return Err(FileError::new(path, error)),
+        Ok(_) => {}
+    }
+    let Ok(meta) = MetaData::read_from_file(path, false) else { return Ok(0) };
+    let wanted = Text::from(format!("{PREFIX}spp").as_str());
+    let value = meta.headers.iter().find_map(|header| header.own_attributes.other.get(&wanted));
+    Ok(match value {
+        Some(AttributeValue::Text(text)) => text.to_string().parse().unwrap_or(0),
+        _ => 0,
+    })
+}

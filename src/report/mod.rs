@@ -1,0 +1,29 @@
+//! What a render leaves behind: EXR and PNG, each written whole or not at all.
+
+mod atomic;
+mod exr;
+mod picture;
+mod png;
+
+pub use atomic::{check_writable, replace};
+pub use exr::{Provenance, film_samples, write as write_exr};
+pub use picture::Picture;
+pub use png::write as write_png;
+
+use std::path::{Path, PathBuf};
+
+/// Why a file could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {reason}", path.display())]
+pub struct FileError {
+    /// The file.
+    pub path: PathBuf,
+    /// What the system or the file format says.
+    pub reason: String,
+}
+
+impl FileError {
+    pub(crate) fn new(path: &Path, reason: impl ToString) -> Self {
+        Self { path: path.to_owned(), reason: reason.to_string() }
+    }
+}
