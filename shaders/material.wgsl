@@ -6,16 +6,17 @@ struct Scattering {
     weight: f32,
 }
 
+fn mirror_direction(normal: vec3<f32>, incoming: vec3<f32>) -> vec3<f32> {
+    return normalize(incoming - 2.0 * dot(incoming, normal) * normal);
+}
+
 // Lambertian surface, uniform hemisphere: (1/π)·cosθ·2π = 2cosθ.
-fn scatter_diffuse(normal: vec3<f32>, u: vec2<f32>) -> Scattering {
-    let local = sample_hemisphere(u);
-    return Scattering(from_local(normal, local), 2.0 * local.z);
+fn weight_diffuse(polar: vec2<f32>) -> f32 {
+    return 2.0 * polar.y;
 }
 
 // Phong lobe about the mirror direction: f_r/p = 1, so the weight is cosθ, and 0
 // for the part of the lobe that lies under the surface.
-fn scatter_glossy(normal: vec3<f32>, incoming: vec3<f32>, exponent: f32, u: vec2<f32>) -> Scattering {
-    let mirror = normalize(incoming - 2.0 * dot(incoming, normal) * normal);
-    let direction = from_local(mirror, sample_phong(u, exponent));
-    return Scattering(direction, max(dot(normal, direction), 0.0));
+fn weight_glossy(normal: vec3<f32>, direction: vec3<f32>) -> f32 {
+    return max(dot(normal, direction), 0.0);
 }

@@ -8,27 +8,27 @@ struct Hit {
 // A loop that a driver cut short leaves this in place of a sphere.
 const UNFINISHED: u32 = 0xfffffffeu;
 
-fn closer_factored(best: Hit, ray: Ray, i: u32, leaving: u32) -> Hit {
-    let q = factored(ray, scene.spheres[i].position, scene.spheres[i].size);
-    let t = distance_to(q, i, leaving);
-    let closer = t < best.distance;
-    return Hit(select(best.distance, t, closer), select(best.sphere, i, closer));
+// What a ray needs to know of a sphere to meet it.
+struct Shape {
+    position: vec3<f32>,
+    size: f32,
+    offset: f32,
 }
 
-fn closer_anchored(best: Hit, ray: Ray, i: u32, leaving: u32) -> Hit {
-    let q = anchored(ray, scene.spheres[i].position, scene.spheres[i].offset, scene.spheres[i].size);
-    let t = distance_to(q, i, leaving);
-    let closer = t < best.distance;
-    return Hit(select(best.distance, t, closer), select(best.sphere, i, closer));
+fn shape_of(i: u32) -> Shape {
+    return Shape(scene.spheres[i].position, scene.spheres[i].size, scene.spheres[i].offset);
 }
 
-// Within each form the spheres keep the order of the scene file, so a strict
-// comparison leaves the lowest index; between the forms it is asked for.
-fn first_of(a: Hit, b: Hit) -> Hit {
-    let tie = a.distance == b.distance && b.distance < MISS;
-    if b.distance < a.distance
-        || (tie && scene.spheres[b.sphere].index < scene.spheres[a.sphere].index) {
-        return b;
-    }
-    return a;
+fn closer(best: Hit, q: Quadratic, i: u32, leaving: u32) -> Hit {
+    let t = distance_to(q, i, leaving);
+    let is_closer = t < best.distance;
+    return Hit(select(best.distance, t, is_closer), select(best.sphere, i, is_closer));
+}
+
+fn closer_factored(best: Hit, ray: Ray, s: Shape, i: u32, leaving: u32) -> Hit {
+    return closer(best, factored(ray, s.position, s.size), i, leaving);
+}
+
+fn closer_anchored(best: Hit, ray: Ray, s: Shape, i: u32, leaving: u32) -> Hit {
+    return closer(best, anchored(ray, s.position, s.offset, s.size), i, leaving);
 }

@@ -61,6 +61,7 @@ fn probe_hit(@builtin(global_invocation_id) id: vec3<u32>) {
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
     if 3u * id.x >= arrayLength(&outputs) { return; }
     let ray = Ray(input_floats(2u * id.x).xyz, input_floats(2u * id.x + 1u).xyz);
+    load_shapes();
     let hit = nearest(ray, inputs[2u * id.x + 1u].w);
     outputs[3u * id.x] = vec4<u32>(bitcast<u32>(hit.distance), hit.sphere, 0u, 0u);
     if hit.sphere < UNFINISHED {
@@ -75,22 +76,20 @@ fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
 fn probe_phong(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= arrayLength(&outputs) { return; }
     let row = input_floats(id.x);
+    let direction = around(vec3<f32>(0.0, 0.0, 1.0), polar_phong(row.x, row.z), row.y);
     let t = one_minus_exp_minus(minus_log_complement(row.x) / (row.z + 1.0));
-    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(sample_phong(row.xy, row.z), t));
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(direction, t));
 }
 
-// Rows in threes: normal and exponent (negative: diffuse); incoming direction; u, v.
-// Result: scattered direction and weight.
+// Rows in threes: normal; incoming direction with the packed sphere, whose surface
+// counts; u, v. Result: scattered direction and weight.
 @compute @workgroup_size(64)
 fn probe_scatter(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= arrayLength(&outputs) { return; }
     let normal = input_floats(3u * id.x);
     let incoming = input_floats(3u * id.x + 1u);
     let u = input_floats(3u * id.x + 2u).xy;
-    var s = scatter_diffuse(normal.xyz, u);
-    if normal.w >= 0.0 {
-        s = scatter_glossy(normal.xyz, incoming.xyz, normal.w, u);
-    }
+    let s = scatter(inputs[3u * id.x + 1u].w, normal.xyz, incoming.xyz, u);
     outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(s.direction, s.weight));
 }
 
@@ -132,16 +131,14 @@ fn probe_film(@builtin(global_invocation_id) id: vec3<u32>) {
 fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= SPHERE_CAPACITY { return; }
     if id.x == 0u {
-        outputs[0] = vec4<u32>(bitcast<vec3<u32>>(scene.origin), scene.bounces);
-        outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.width);
-        outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), scene.height);
-        outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.seed);
-        outputs[4] = vec4<u32>(scene.factored_count, scene.sphere_count, scene.start,
-            bitcast<u32>(scene.film_shift));
-        outputs[5] = vec4<u32>(scene.bound_bits, 0u, 0u, 0u);
+        outputs[0] = vec4<u32>(bitcast<vec3<u32>>(scene.origin), scene.seed);
+        outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.start);
+        outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
+        outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
+        outputs[4] = vec4<u32>(scene.factored_count, scene.sphere_count, 0u, 0u);
     }
     let s = scene.spheres[id.x];
-    let at = 6u + 3u * id.x;
+    let at = 5u + 3u * id.x;
     outputs[at] = vec4<u32>(bitcast<vec3<u32>>(s.position), bitcast<u32>(s.size));
     outputs[at + 1u] = vec4<u32>(bitcast<vec3<u32>>(s.color), bitcast<u32>(s.exponent));
     outputs[at + 2u] = vec4<u32>(bitcast<u32>(s.offset), s.index, s.kind, s.inside);

@@ -5,12 +5,12 @@
 @compute @workgroup_size(TILE_WIDTH, TILE_HEIGHT, TILE_SAMPLES)
 fn render(@builtin(global_invocation_id) id: vec3<u32>) {
     let pixel = vec2<u32>(id.x, work.row_start + id.y);
-    if pixel.x >= scene.width || pixel.y >= work.row_end || id.z >= work.sample_count {
+    if pixel.x >= WIDTH || pixel.y >= work.row_end || id.z >= work.sample_count {
         return;
     }
     let low = work.first_sample_low + id.z;
     let high = work.first_sample_high + u32(low < id.z);
-    let key = SampleKey(pixel.y * scene.width + pixel.x, low, high);
+    let key = SampleKey(pixel.y * WIDTH + pixel.x, low, high);
     let sample = trace(pixel, key);
     if !sample.finished {
         record_invalid(key, REASON_UNFINISHED);
@@ -24,5 +24,5 @@ fn render(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let row = pixel.y - work.band_start;
-    add_sample((row * scene.width + pixel.x) * FILM_WORDS, sample.radiance);
+    add_sample((row * WIDTH + pixel.x) * FILM_WORDS, sample.radiance);
 }

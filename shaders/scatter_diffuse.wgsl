@@ -1,4 +1,5 @@
 // Every surface that scatters is diffuse.
 fn scatter(sphere: u32, normal: vec3<f32>, incoming: vec3<f32>, u: vec2<f32>) -> Scattering {
-    return scatter_diffuse(normal, u);
+    let polar = polar_hemisphere(u.x);
+    return Scattering(around(normal, polar, u.y), weight_diffuse(polar));
 }

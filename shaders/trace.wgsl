@@ -20,8 +20,8 @@ fn surface_point(ray: Ray, hit: Hit) -> SurfacePoint {
 
 // The ray through a point of the pixel drawn uniformly (box filter).
 fn camera_ray(pixel: vec2<u32>, u: vec2<f32>) -> Ray {
-    let x = 2.0 * (f32(pixel.x) + u.x) / f32(scene.width) - 1.0;
-    let y = 1.0 - 2.0 * (f32(pixel.y) + u.y) / f32(scene.height);
+    let x = 2.0 * (f32(pixel.x) + u.x) / f32(WIDTH) - 1.0;
+    let y = 1.0 - 2.0 * (f32(pixel.y) + u.y) / f32(HEIGHT);
     return Ray(scene.origin, normalize(scene.forward + x * scene.right + y * scene.up));
 }
 
@@ -32,10 +32,11 @@ struct Sample {
 }
 
 fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
+    load_shapes();
     var ray = camera_ray(pixel, unit_floats(random_bits(key, 0u)));
     var throughput = vec3<f32>(1.0);
     var leaving = scene.start;
-    for (var bounce = 0u; bounce <= scene.bounces; bounce++) {
+    for (var bounce = 0u; bounce <= BOUNCES; bounce++) {
         let hit = nearest(ray, leaving);
         if hit.sphere >= UNFINISHED {
             return Sample(vec3<f32>(0.0), hit.sphere == NO_SPHERE);
@@ -44,7 +45,7 @@ fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
         if scene.spheres[hit.sphere].kind == KIND_EMITTER {
             return Sample(throughput * color, true);
         }
-        if bounce == scene.bounces {
+        if bounce == BOUNCES {
             return Sample(vec3<f32>(0.0), true);
         }
         let point = surface_point(ray, hit);

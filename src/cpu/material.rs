@@ -1,4 +1,4 @@
-//! Scattering: a direction and its weight f_r·cosθ/p, without the albedo, as in
+//! Scattering: a direction and its weight `f_r`·cosθ/p, without the albedo, as in
 //! `shaders/material.wgsl`.
 
 use super::sampling::{from_local, sample_hemisphere, sample_phong};

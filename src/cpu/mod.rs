@@ -20,6 +20,7 @@ use crate::bound::sample_scale;
 use crate::film::{Film, PixelSums, PixelWords, SampleScale};
 use crate::scene::Scene;
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
+use glam::Vec3;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::num::NonZeroUsize;
@@ -101,10 +102,11 @@ fn add_to_pixel(
     let mut invalid = Ledger::default();
     let mut sums = PixelSums::of(words);
     for index in range {
-        let radiance = trace(scene, SampleKey { pixel, index }).as_vec3().to_array();
-        if radiance == [0.0; 3] {
+        let radiance = trace(scene, SampleKey { pixel, index }).as_vec3();
+        if radiance == Vec3::ZERO {
             continue;
         }
+        let radiance = radiance.to_array();
         if scale.admits(radiance) {
             sums.add(radiance, scale);
         } else {
@@ -131,4 +133,46 @@ fn merge(mut ours: Ledger, theirs: Ledger) -> Ledger {
     ours.records.sort_unstable_by_key(|record| (record.pixel, record.index));
     ours.records.truncate(LEDGER_RECORDS);
     ours
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Camera, ImageSize, Radiance, RenderSettings, Sphere, Surface};
+    use glam::DVec3;
+
+    /// Inside a light of radiance 10, so that every sample is 10.
+    fn tracer(bound: f64, threads: usize) -> CpuTracer {
+        let camera = Camera::new(DVec3::ZERO, DVec3::X, DVec3::Z, 60.0).expect("a camera");
+        let light = Surface::Emitter(Radiance::new(DVec3::splat(10.0)).expect("a radiance"));
+        let spheres = vec![Sphere::new(DVec3::ZERO, 1.0, light).expect("a sphere")];
+        let size = ImageSize::new(9, 7).expect("a size");
+        let scene = Scene::new(camera, size, RenderSettings::default(), spheres);
+        let mut tracer = CpuTracer::new(&scene, NonZeroUsize::new(threads)).expect("threads");
+        tracer.film = Film::new(size, SampleScale::from_bound(bound));
+        tracer
+    }
+
+    #[test]
+    fn invalid_samples_are_counted_and_the_first_addresses_kept() {
+        for threads in [1, 2, 3] {
+            let mut tracer = tracer(9.0, threads);
+            tracer.add_samples(5..10).expect("samples");
+            tracer.add_samples(0..5).expect("samples");
+            assert_eq!(tracer.ledger.count, 9 * 7 * 10);
+            let addresses: Vec<_> =
+                tracer.ledger.records.iter().map(|r| (r.pixel, r.index)).collect();
+            let first: Vec<_> = (0..16).map(|i| (i / 10, u64::from(i % 10))).collect();
+            assert_eq!(addresses, first);
+            assert!(tracer.film.pixels().iter().flatten().all(|&word| word == 0));
+            assert_eq!(tracer.film.samples().count(), 10);
+        }
+    }
+
+    #[test]
+    fn a_sample_at_the_bound_is_valid() {
+        let mut tracer = tracer(10.0, 2);
+        tracer.add_samples(0..3).expect("samples");
+        assert_eq!(tracer.ledger.count, 0);
+    }
 }

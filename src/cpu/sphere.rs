@@ -76,3 +76,63 @@ pub fn exit(q: Quadratic, leaves: bool) -> f64 {
         (-q.c / (root + q.b)).max(0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{MISS, Ray, anchored, entry, exit, factored};
+    use glam::DVec3;
+
+    /// A sphere of radius 2 around (0, −2, 0): F = |p|²/4 + y.
+    fn both(origin: [f64; 3], direction: [f64; 3]) -> [super::Quadratic; 2] {
+        let ray = Ray { origin: origin.into(), direction: DVec3::from(direction).normalize() };
+        [factored(&ray, DVec3::new(0.0, -2.0, 0.0), 2.0), anchored(&ray, DVec3::Y, 0.0, 0.5)]
+    }
+
+    fn assert_near(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 1e-14, "{found} instead of {expected}");
+    }
+
+    #[test]
+    fn both_forms_meet_the_same_points() {
+        for q in both([0.0, 3.0, 0.0], [0.0, -1.0, 0.0]) {
+            assert_near(entry(q), 3.0);
+        }
+        for q in both([0.0, -1.0, 0.0], [0.0, -1.0, 0.0]) {
+            assert_near(exit(q, false), 3.0);
+        }
+        for q in both([0.0, -1.0, 0.0], [0.0, 1.0, 0.0]) {
+            assert_near(exit(q, false), 1.0);
+        }
+        for q in both([0.0, 0.0, 0.0], [1.0, -1.0, 0.0]) {
+            assert_near(exit(q, true), 8_f64.sqrt());
+        }
+    }
+
+    #[test]
+    fn rays_beside_and_away_miss() {
+        for q in both([0.0, 3.0, 0.0], [1.0, -0.1, 0.0]) {
+            assert_eq!(entry(q).to_bits(), MISS.to_bits());
+        }
+        for q in both([0.0, 3.0, 0.0], [0.0, 1.0, 0.0]) {
+            assert_eq!(entry(q).to_bits(), MISS.to_bits());
+        }
+    }
+
+    /// An origin that rounding put under the surface is on it: heading in, it hits at
+    /// once; heading out, not at all. The same from inside.
+    #[test]
+    fn origins_on_the_wrong_side_are_on_the_surface() {
+        for q in both([0.0, -1e-12, 0.0], [0.0, -1.0, 0.0]) {
+            assert_eq!(entry(q).to_bits(), 0.0_f64.to_bits());
+        }
+        for q in both([0.0, -1e-12, 0.0], [0.0, 1.0, 0.0]) {
+            assert_eq!(entry(q).to_bits(), MISS.to_bits());
+        }
+        for q in both([0.0, 1e-12, 0.0], [0.0, 1.0, 0.0]) {
+            assert_eq!(exit(q, false).to_bits(), 0.0_f64.to_bits());
+        }
+        for q in both([0.0, 1e-12, 0.0], [0.0, -1.0, 0.0]) {
+            assert_near(exit(q, false), 4.0 + 1e-12);
+        }
+    }
+}

@@ -47,12 +47,13 @@ impl GpuTracer {
         let packed = kernel::pack(scene, &viewpoint, scale)
             .map_err(|error| TraceError::Device(error.to_string()))?;
         let kernel = Kernel {
+            size: scene.size(),
+            bounces: scene.settings().bounces(),
             effects: Effects::of(scene, &viewpoint),
-            nearest: Nearest::of(&packed),
-            tile: Tile::of(scene.size()),
+            nearest: Nearest::of(&packed.forms),
         };
-        check_loops(&kernel, &packed.scene)?;
-        Self::with_kernel(scene, gpu, &packed.scene, &kernel.wgsl(), kernel.tile)
+        check_loops(&kernel, scene.spheres().len())?;
+        Self::with_kernel(scene, gpu, &packed.scene, &kernel.wgsl())
     }
 
     /// Puts a packed scene and the text of a kernel on the device; the tests use it to
@@ -65,7 +66,6 @@ impl GpuTracer {
         gpu: Gpu,
         packed: &layout::Scene,
         wgsl: &str,
-        tile: Tile,
     ) -> Result<Self, TraceError> {
         let device = gpu.device();
         let pipeline = pipeline(device, wgsl);
@@ -98,7 +98,7 @@ impl GpuTracer {
             gpu,
             size: scene.size(),
             scale: sample_scale(scene),
-            tile,
+            tile: Tile::of(scene.size()),
             samples: SampleRanges::default(),
             pipeline,
             work,
@@ -210,15 +210,15 @@ impl Tracer for GpuTracer {
     }
 }
 
-fn check_loops(kernel: &Kernel, packed: &layout::Scene) -> Result<(), TraceError> {
-    let iterations = kernel.loop_iterations(packed.bounces, packed.sphere_count);
+fn check_loops(kernel: &Kernel, spheres: usize) -> Result<(), TraceError> {
+    let iterations = kernel.loop_iterations(spheres);
     if iterations < MAX_LOOP_ITERATIONS {
         return Ok(());
     }
     Err(TraceError::Device(format!(
-        "{} bounces among {} spheres take {iterations} loop iterations per sample; drivers may stop \
-         after {MAX_LOOP_ITERATIONS} (fewer bounces or --device cpu will do)",
-        packed.bounces, packed.sphere_count
+        "{} bounces among {spheres} spheres take {iterations} loop iterations per sample; drivers \
+         may stop after {MAX_LOOP_ITERATIONS} (fewer bounces or --device cpu will do)",
+        kernel.bounces
     )))
 }
 

@@ -1,12 +1,11 @@
 //! Composes the kernel's WGSL from the fragments in `shaders/`, by concatenation alone.
 
-use super::pack::Packed;
+use super::pack::Form;
 use crate::effects::Effects;
 use crate::scene::ImageSize;
-use std::fmt::Write;
 
 /// Scenes of up to this many spheres get straight-line code instead of a loop over
-/// the spheres: lavapipe fetches a loop's operands lane by lane (BENCHMARKS.md, "Nearest hit").
+/// the spheres (BENCHMARKS.md, "Nearest hit").
 pub const UNROLLED_SPHERES: usize = 16;
 
 macro_rules! fragment {
@@ -41,55 +40,47 @@ impl Tile {
 }
 
 /// How the nearest hit is searched.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Nearest {
     /// A loop over the spheres, any number of them.
     Loop,
-    /// One statement per sphere.
-    Unrolled {
-        /// Spheres in factored form.
-        factored: usize,
-        /// Spheres in anchored form.
-        anchored: usize,
-    },
+    /// One statement per sphere, in the order of the scene file.
+    Unrolled(Vec<Form>),
 }
 
 impl Nearest {
-    /// The search that suits a packed scene.
+    /// The search that suits spheres of these forms.
     #[must_use]
-    pub fn of(packed: &Packed) -> Self {
-        let (factored, anchored) = (packed.factored, packed.anchored);
-        if factored + anchored <= UNROLLED_SPHERES {
-            Self::Unrolled { factored, anchored }
-        } else {
-            Self::Loop
-        }
+    pub fn of(forms: &[Form]) -> Self {
+        if forms.len() <= UNROLLED_SPHERES { Self::Unrolled(forms.to_vec()) } else { Self::Loop }
     }
 
-    fn wgsl(self) -> String {
+    fn wgsl(&self) -> String {
         match self {
             Self::Loop => fragment!("nearest_loop").to_owned(),
-            Self::Unrolled { factored, anchored } => unrolled(factored, anchored),
+            Self::Unrolled(forms) => unrolled(forms),
         }
     }
 }
 
-/// What one kernel is composed for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What one kernel is composed for. It does not depend on which samples are traced.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Kernel {
+    /// Size of the picture.
+    pub size: ImageSize,
+    /// Most scatterings of one path.
+    pub bounces: u32,
     /// The effects that it simulates.
     pub effects: Effects,
     /// How it searches for the nearest hit.
     pub nearest: Nearest,
-    /// Shape of its workgroups.
-    pub tile: Tile,
 }
 
 impl Kernel {
     /// The WGSL of the entry point `render`.
     #[must_use]
     pub fn wgsl(&self) -> String {
-        let Tile { width, height, samples } = self.tile;
+        let Tile { width, height, samples } = Tile::of(self.size);
         let tile = format!(
             "const TILE_WIDTH: u32 = {width}u;\nconst TILE_HEIGHT: u32 = {height}u;\n\
              const TILE_SAMPLES: u32 = {samples}u;\n"
@@ -107,7 +98,14 @@ impl Kernel {
             (false, true) => fragment!("scatter_glossy"),
             (_, false) => fragment!("scatter_diffuse"),
         };
+        let constants = format!(
+            "const WIDTH: u32 = {}u;\nconst HEIGHT: u32 = {}u;\nconst BOUNCES: u32 = {}u;\n",
+            self.size.width(),
+            self.size.height(),
+            self.bounces
+        );
         [
+            &constants,
             fragment!("scene"),
             fragment!("rng"),
             fragment!("math"),
@@ -126,37 +124,58 @@ impl Kernel {
 
     /// Loop iterations that one sample may take, over all loops together.
     #[must_use]
-    pub fn loop_iterations(&self, bounces: u32, spheres: u32) -> u64 {
-        let segments = u64::from(bounces) + 1;
+    pub fn loop_iterations(&self, spheres: usize) -> u64 {
+        let segments = u64::from(self.bounces) + 1;
         match self.nearest {
-            Nearest::Loop => segments * (u64::from(spheres) + 1),
-            Nearest::Unrolled { .. } => segments,
+            Nearest::Loop => segments * (spheres as u64 + 1),
+            Nearest::Unrolled(_) => segments,
         }
     }
 }
 
-fn unrolled(factored: usize, anchored: usize) -> String {
-    let mut text = String::from(
-        "// `leaving` is the sphere that the ray starts on.\n\
-         fn nearest(ray: Ray, leaving: u32) -> Hit {\n\
-         \x20   var small = Hit(MISS, NO_SPHERE);\n\
-         \x20   var large = Hit(MISS, NO_SPHERE);\n",
-    );
-    let mut line = |best: &str, form: &str, i: usize| {
-        writeln!(text, "    {best} = closer_{form}({best}, ray, {i}u, leaving);")
-            .expect("a String takes any text");
-    };
-    (0..factored).for_each(|i| line("small", "factored", i));
-    (factored..factored + anchored).for_each(|i| line("large", "anchored", i));
-    text + "    return first_of(small, large);\n}\n"
+/// Straight-line search. The shapes are loaded once a path: where a driver fetches
+/// uniforms lane by lane, that is a fifth of the time (BENCHMARKS.md, "Nearest hit").
+/// Factored spheres come first in the uniform buffer, each group in the order of the
+/// file, and so each sphere's place follows from the forms.
+fn unrolled(forms: &[Form]) -> String {
+    let mut factored = 0;
+    let mut anchored = forms.iter().filter(|&&form| form == Form::Factored).count();
+    let (mut variables, mut loads, mut steps) = (String::new(), String::new(), String::new());
+    for form in forms {
+        let (name, place) = match form {
+            Form::Factored => ("factored", &mut factored),
+            Form::Anchored => ("anchored", &mut anchored),
+        };
+        variables += &format!("var<private> shape_{place}: Shape;\n");
+        loads += &format!("    shape_{place} = shape_of({place}u);\n");
+        steps +=
+            &format!("    best = closer_{name}(best, ray, shape_{place}, {place}u, leaving);\n");
+        *place += 1;
+    }
+    format!(
+        "// A few spheres: one statement each, in the order of the scene file, so that a\n\
+         // strict comparison leaves the lowest index.\n\n\
+         {variables}\n\
+         fn load_shapes() {{\n{loads}}}\n\n\
+         // `leaving` is the sphere that the ray starts on.\n\
+         fn nearest(ray: Ray, leaving: u32) -> Hit {{\n    \
+         var best = Hit(MISS, NO_SPHERE);\n{steps}    return best;\n}}\n"
+    )
 }
 
 /// The WGSL of the probe: entry points that run single functions of the kernel over a
 /// table of inputs, for the tests.
+///
+/// # Panics
+/// Never: 512×512 is a picture.
 #[must_use]
 pub fn probe_source() -> String {
-    let tile = Tile { width: 8, height: 8, samples: 1 };
-    let kernel = Kernel { effects: Effects::ALL, nearest: Nearest::Loop, tile };
+    let kernel = Kernel {
+        size: ImageSize::new(512, 512).expect("a picture"),
+        bounces: 2,
+        effects: Effects::ALL,
+        nearest: Nearest::Loop,
+    };
     kernel.tracing() + &[fragment!("film"), fragment!("probe")].join("\n")
 }
 

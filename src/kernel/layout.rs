@@ -51,32 +51,26 @@ pub struct Sphere {
 pub struct Scene {
     /// Camera position, in kernel units.
     pub origin: [f32; 3],
-    /// Most scatterings of one path.
-    pub bounces: u32,
-    /// Unit view direction.
-    pub forward: [f32; 3],
-    /// Picture width in pixels.
-    pub width: u32,
-    /// Half the picture's width on the plane at distance 1.
-    pub right: [f32; 3],
-    /// Picture height in pixels.
-    pub height: u32,
-    /// Half the picture's height on the plane at distance 1.
-    pub up: [f32; 3],
     /// Seed of the random numbers.
     pub seed: u32,
+    /// Unit view direction.
+    pub forward: [f32; 3],
+    /// Sphere that the camera stands on, or [`NO_SPHERE`].
+    pub start: u32,
+    /// Half the picture's width on the plane at distance 1.
+    pub right: [f32; 3],
+    /// Film scale: a sample x becomes trunc(x·2^`film_shift`).
+    pub film_shift: i32,
+    /// Half the picture's height on the plane at distance 1.
+    pub up: [f32; 3],
+    /// Bit pattern of the bound on one sample.
+    pub bound_bits: u32,
     /// Spheres in factored form; they come first.
     pub factored_count: u32,
     /// All spheres.
     pub sphere_count: u32,
-    /// Sphere that the camera stands on, or [`NO_SPHERE`].
-    pub start: u32,
-    /// Film scale: a sample x becomes trunc(x·2^`film_shift`).
-    pub film_shift: i32,
-    /// Bit pattern of the bound on one sample.
-    pub bound_bits: u32,
     /// Implicit in WGSL.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
     /// Factored ones first, each group in the order of the scene file.
     pub spheres: [Sphere; SPHERE_CAPACITY],
 }

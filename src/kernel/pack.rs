@@ -42,15 +42,22 @@ impl KernelUnits {
     }
 }
 
+/// How a sphere is intersected.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// By centre and radius: spheres up to the scene's extent.
+    Factored,
+    /// By curvature and the tangent at the focus: larger ones.
+    Anchored,
+}
+
 /// A packed scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Packed {
     /// What goes into the uniform buffer.
     pub scene: Box<layout::Scene>,
-    /// Spheres in factored form.
-    pub factored: usize,
-    /// Spheres in anchored form.
-    pub anchored: usize,
+    /// Form of every sphere, in the order of the scene file.
+    pub forms: Vec<Form>,
 }
 
 /// Packs a scene for the device.
@@ -67,27 +74,31 @@ pub fn pack(
         return Err(TooManySpheres(spheres.len()));
     }
     let units = KernelUnits::of(viewpoint);
-    let is_factored = |i: &usize| spheres[*i].radius() <= viewpoint.extent();
-    let (factored, anchored): (Vec<usize>, Vec<usize>) = (0..spheres.len()).partition(is_factored);
+    let forms: Vec<Form> = spheres
+        .iter()
+        .map(|s| if s.radius() <= viewpoint.extent() { Form::Factored } else { Form::Anchored })
+        .collect();
+    let of_form = |wanted| {
+        let matches = std::iter::zip(0.., &forms).filter(move |(_, form)| **form == wanted);
+        matches.map(|(index, _): (usize, _)| index)
+    };
 
     let mut packed: Box<layout::Scene> = bytemuck::zeroed_box();
     pack_camera(&mut packed, scene, &units);
-    let order = factored.iter().map(|&i| (i, true)).chain(anchored.iter().map(|&i| (i, false)));
     packed.start = NO_SPHERE;
-    for (place, (index, factored)) in order.enumerate() {
+    for (place, index) in of_form(Form::Factored).chain(of_form(Form::Anchored)).enumerate() {
         let inside = viewpoint.inside()[index];
-        packed.spheres[place] = pack_sphere(&spheres[index], index, factored, inside, &units);
+        packed.spheres[place] = pack_sphere(&spheres[index], index, forms[index], inside, &units);
         if viewpoint.start() == Some(index) {
             packed.start = word(place);
         }
     }
-    packed.factored_count = word(factored.len());
+    packed.factored_count = word(of_form(Form::Factored).count());
     packed.sphere_count = word(spheres.len());
-    packed.bounces = scene.settings().bounces();
     packed.seed = scene.settings().seed();
     packed.film_shift = scale.shift();
     packed.bound_bits = scale.bound().to_bits();
-    Ok(Packed { scene: packed, factored: factored.len(), anchored: anchored.len() })
+    Ok(Packed { scene: packed, forms })
 }
 
 fn pack_camera(packed: &mut layout::Scene, scene: &Scene, units: &KernelUnits) {
@@ -98,14 +109,12 @@ fn pack_camera(packed: &mut layout::Scene, scene: &Scene, units: &KernelUnits) {
     packed.forward = floats(camera.forward());
     packed.right = floats(half_width * camera.right());
     packed.up = floats(half_height * camera.up());
-    packed.width = size.width();
-    packed.height = size.height();
 }
 
 fn pack_sphere(
     sphere: &Sphere,
     index: usize,
-    factored: bool,
+    form: Form,
     inside: bool,
     units: &KernelUnits,
 ) -> layout::Sphere {
@@ -115,13 +124,15 @@ fn pack_sphere(
         Surface::Glossy(albedo, n) => (albedo.rgb(), n.get(), layout::KIND_GLOSSY),
     };
     let (center, radius) = (units.point(sphere.center()), units.length(sphere.radius()));
-    let (position, size, offset) = if factored {
-        (center, radius, 0.0)
-    } else {
-        // F(p) = (|p - c|² - R²)/2R at the focus, p = 0: gradient -c/R and value
-        // (|c|² - R²)/2R, factored so that it does not cancel for a far centre.
-        let distance = center.length();
-        (-center / radius, 1.0 / radius, (distance - radius) * (distance + radius) / (2.0 * radius))
+    let (position, size, offset) = match form {
+        Form::Factored => (center, radius, 0.0),
+        Form::Anchored => {
+            // F(p) = (|p - c|² - R²)/2R at the focus, p = 0: gradient -c/R and value
+            // (|c|² - R²)/2R, factored so that it does not cancel for a far centre.
+            let distance = center.length();
+            let value = (distance - radius) * (distance + radius) / (2.0 * radius);
+            (-center / radius, 1.0 / radius, value)
+        }
     };
     layout::Sphere {
         position: floats(position),
