@@ -1,3 +1,14 @@
+//! candor: a headless path tracer for scenes of spheres that states its own error.
+//!
+//! Data flows one way, and no module knows what stands to its right:
+//!
+//! [`scene`] → [`viewpoint`], [`effects`], [`bound`] → [`film`] → [`kernel`] → [`gpu`] or
+//! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`render`], [`verify`] → [`report`] → [`cli`]
+//!
+//! A scene is read and validated, the effects that it calls for are decided, a kernel is
+//! composed of those and nothing else, a tracer adds samples to an exact film, and
+//! everything that is said about the picture comes from the film's sums.
+
 pub mod bound;
 pub mod cli;
 pub mod cpu;

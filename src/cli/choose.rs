@@ -10,11 +10,15 @@ use std::num::NonZeroUsize;
 
 /// A device that was found to open.
 pub(super) enum Chosen {
-    Adapter(Adapter),
+    Adapter(Box<Adapter>),
     Twin(Option<NonZeroUsize>),
 }
 
 impl Chosen {
+    fn of(adapter: Adapter) -> Self {
+        Self::Adapter(Box::new(adapter))
+    }
+
     /// A tracer of the scene on this device.
     pub fn tracer(&self, scene: &Scene) -> Result<Box<dyn Tracer>, TraceError> {
         Ok(match self {
@@ -49,10 +53,10 @@ pub(super) fn choose(
     match choice {
         DeviceChoice::Cpu => Ok(Chosen::Twin(threads)),
         DeviceChoice::Auto => {
-            Ok(first_that_opens(adapters()).map_or(Chosen::Twin(threads), Chosen::Adapter))
+            Ok(first_that_opens(adapters()).map_or(Chosen::Twin(threads), Chosen::of))
         }
         DeviceChoice::Gpu => match first_that_opens(adapters()) {
-            Some(adapter) => Ok(Chosen::Adapter(adapter)),
+            Some(adapter) => Ok(Chosen::of(adapter)),
             None => refuse(
                 "no Vulkan, Metal or DX12 device here; install a graphics driver (on Debian and \
                  Ubuntu mesa-vulkan-drivers has one in software), or use --device cpu",
@@ -71,7 +75,7 @@ fn named(name: &str) -> Result<Chosen, Refusal> {
     let wanted = name.to_lowercase();
     let names: Vec<String> = all.iter().map(|adapter| adapter.name().to_owned()).collect();
     match all.into_iter().find(|adapter| adapter.name().to_lowercase().contains(&wanted)) {
-        Some(adapter) => Ok(Chosen::Adapter(adapter)),
+        Some(adapter) => Ok(Chosen::of(adapter)),
         None if names.is_empty() => {
             refuse(format_args!("no device named \"{name}\"; there is only --device cpu here"))
         }

@@ -89,10 +89,11 @@ impl Outputs {
             return Ok(path.to_owned());
         }
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let free = (1_u32..)
-            .map(|i| path.with_file_name(format!("{stem}.{i}.exr")))
-            .find(|beside| !beside.exists());
-        Ok(free.expect("some number is free"))
+        let mut beside = (1..=u32::MAX).map(|i| path.with_file_name(format!("{stem}.{i}.exr")));
+        match beside.find(|beside| !beside.exists()) {
+            Some(free) => Ok(free),
+            None => refuse(format_args!("{}: every name beside it is taken", path.display())),
+        }
     }
 }
 

@@ -72,7 +72,12 @@ impl Reporter {
         }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "for show"
+    )]
     fn text(&self, progress: &Progress) -> String {
         let seconds = progress.elapsed.as_secs_f64().max(1e-9);
         let rate = progress.done as f64 * f64::from(self.pixels) / seconds;
@@ -94,7 +99,12 @@ impl Reporter {
     }
 
     /// Thousandths of the render that are done.
-    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "for show"
+    )]
     fn share(&self, progress: &Progress) -> u64 {
         let samples = progress.done as f64 / self.planned as f64;
         let time = self.limit.map_or(0.0, |l| progress.elapsed.as_secs_f64() / l.as_secs_f64());

@@ -190,21 +190,20 @@ impl Finished {
             .summary
             .relative_error
             .map_or("error unknown".to_owned(), |e| format!("error {:.3} %", 100.0 * e));
-        let mut line = format!(
-            "{stopped}: {error}, {} spp, {:.2} s on {}, {} invalid samples, {} unproven pixels",
-            self.summary.samples,
-            self.seconds(),
-            self.tracer.device,
-            self.ledger.count,
-            self.summary.unproven_pixels,
-        );
+        let mut facts = vec![
+            error,
+            format!("{} spp", self.summary.samples),
+            format!("{:.2} s on {}", self.seconds(), self.tracer.device),
+            format!("{} invalid samples", self.ledger.count),
+            format!("{} unproven pixels", self.summary.unproven_pixels),
+        ];
         if self.summary.coarse_pixels > 0 {
-            line += &format!(", {} pixels near the film's step", self.summary.coarse_pixels);
+            facts.push(format!("{} pixels near the film's step", self.summary.coarse_pixels));
         }
         if self.summary.relative_error.is_some_and(|error| error > 0.0) {
             // The error falls with the square root of the samples: half of it takes four times.
-            line += &format!("; half the error takes {:.0} s more", 3.0 * self.seconds());
+            facts.push(format!("half the error takes {:.1} s more", 3.0 * self.seconds()));
         }
-        line
+        format!("{stopped}: {}", facts.join(", "))
     }
 }

@@ -4,7 +4,7 @@
 //! Vulkan at all.
 
 mod interior;
-mod material;
+pub mod material;
 mod nearest;
 pub mod rng;
 pub mod sampling;

@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 /// One deviation in standard errors and its two-sided p-value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Deviation {
-    /// (a - b)/√(σ²_a + σ²_b).
+    /// Difference of the means over its standard error, from both variances.
     pub z: f64,
     /// Probability of a deviation as large where both show the same.
     pub p: f64,

@@ -93,7 +93,7 @@ impl<'gpu> Probe<'gpu> {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        let used = self.bindings_of(entry);
+        let used = bindings_of(entry);
         let entries: Vec<wgpu::BindGroupEntry> = buffers
             .iter()
             .filter(|(binding, _)| used.contains(binding))
@@ -117,26 +117,26 @@ impl<'gpu> Probe<'gpu> {
         }
         self.gpu.run(encoder)
     }
+}
 
-    /// The bindings that an entry point reaches, from naga.
-    fn bindings_of(&self, entry: &str) -> Vec<u32> {
-        let module = naga::front::wgsl::parse_str(&probe_source()).expect("compiled before");
-        let info = naga::valid::Validator::new(
-            naga::valid::ValidationFlags::all(),
-            naga::valid::Capabilities::empty(),
-        )
-        .validate(&module)
-        .expect("compiled before");
-        let index = module
-            .entry_points
-            .iter()
-            .position(|e| e.name == entry)
-            .expect("the probe has this entry point");
-        module
-            .global_variables
-            .iter()
-            .filter(|(handle, _)| !info.get_entry_point(index)[*handle].is_empty())
-            .filter_map(|(_, variable)| variable.binding.as_ref().map(|b| b.binding))
-            .collect()
-    }
+/// The bindings that an entry point reaches, from naga.
+fn bindings_of(entry: &str) -> Vec<u32> {
+    let module = naga::front::wgsl::parse_str(&probe_source()).expect("compiled before");
+    let info = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::empty(),
+    )
+    .validate(&module)
+    .expect("compiled before");
+    let index = module
+        .entry_points
+        .iter()
+        .position(|e| e.name == entry)
+        .expect("the probe has this entry point");
+    module
+        .global_variables
+        .iter()
+        .filter(|(handle, _)| !info.get_entry_point(index)[*handle].is_empty())
+        .filter_map(|(_, variable)| variable.binding.as_ref().map(|b| b.binding))
+        .collect()
 }

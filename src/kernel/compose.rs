@@ -138,20 +138,23 @@ impl Kernel {
 /// Factored spheres come first in the uniform buffer, each group in the order of the
 /// file, and so each sphere's place follows from the forms.
 fn unrolled(forms: &[Form]) -> String {
-    let mut factored = 0;
-    let mut anchored = forms.iter().filter(|&&form| form == Form::Factored).count();
-    let (mut variables, mut loads, mut steps) = (String::new(), String::new(), String::new());
-    for form in forms {
-        let (name, place) = match form {
-            Form::Factored => ("factored", &mut factored),
-            Form::Anchored => ("anchored", &mut anchored),
-        };
-        variables += &format!("var<private> shape_{place}: Shape;\n");
-        loads += &format!("    shape_{place} = shape_of({place}u);\n");
-        steps +=
-            &format!("    best = closer_{name}(best, ray, shape_{place}, {place}u, leaving);\n");
-        *place += 1;
-    }
+    let mut factored = 0..;
+    let mut anchored = forms.iter().filter(|&&form| form == Form::Factored).count()..;
+    let places: Vec<(&str, usize)> = forms
+        .iter()
+        .filter_map(|form| match form {
+            Form::Factored => Some(("factored", factored.next()?)),
+            Form::Anchored => Some(("anchored", anchored.next()?)),
+        })
+        .collect();
+    let lines = |line: &dyn Fn(&str, usize) -> String| -> String {
+        places.iter().map(|&(form, i)| line(form, i)).collect()
+    };
+    let variables = lines(&|_, i| format!("var<private> shape_{i}: Shape;\n"));
+    let loads = lines(&|_, i| format!("    shape_{i} = shape_of({i}u);\n"));
+    let steps = lines(&|form, i| {
+        format!("    best = closer_{form}(best, ray, shape_{i}, {i}u, leaving);\n")
+    });
     format!(
         "// A few spheres: one statement each, in the order of the scene file, so that a\n\
          // strict comparison leaves the lowest index.\n\n\

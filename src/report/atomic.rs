@@ -12,7 +12,7 @@ use std::path::Path;
 /// If the folder is missing or not writable, or `path` is a folder itself.
 pub fn check_writable(path: &Path) -> Result<(), FileError> {
     if path.is_dir() {
-        return Err(FileError::new(path, "is a folder, not a file"));
+        return Err(FileError::new(path, &"is a folder, not a file"));
     }
     temporary(path).map(drop)
 }
@@ -26,7 +26,7 @@ pub fn replace(
     write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), String>,
 ) -> Result<(), FileError> {
     let file = temporary(path)?;
-    let fail = |reason: String| FileError::new(path, format!("cannot be written: {reason}"));
+    let fail = |reason: String| FileError::new(path, &format!("cannot be written: {reason}"));
     let mut buffer = BufWriter::new(file.as_file());
     write(&mut buffer).map_err(fail)?;
     buffer.flush().map_err(|error| fail(error.to_string()))?;
@@ -45,7 +45,7 @@ fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, FileError> {
     tempfile::Builder::new()
         .prefix(".candor-")
         .tempfile_in(folder)
-        .map_err(|error| FileError::new(path, format!("cannot be written: {error}")))
+        .map_err(|error| FileError::new(path, &format!("cannot be written: {error}")))
 }
 
 /// A temporary file is private; a picture is not. Where this is refused (some network

@@ -1,4 +1,4 @@
-//! OpenEXR: mean radiance, its standard error, and where the picture comes from.
+//! `OpenEXR`: mean radiance, its standard error, and where the picture comes from.
 
 use super::{FileError, Picture, replace};
 use crate::film::{SampleRanges, SampleScale};
@@ -122,7 +122,7 @@ fn latin(text: &str) -> Text {
 pub fn film_samples(path: &Path) -> Result<u64, FileError> {
     match std::fs::File::open(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(0),
-        Err(error) => return Err(FileError::new(path, error)),
+        Err(error) => return Err(FileError::new(path, &error)),
         Ok(_) => {}
     }
     let Ok(meta) = MetaData::read_from_file(path, false) else { return Ok(0) };
