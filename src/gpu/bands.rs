@@ -47,6 +47,11 @@ pub(super) fn allocate(gpu: &Gpu, size: ImageSize) -> Result<Vec<Band>, TraceErr
     Ok(bands)
 }
 
+/// Bytes of the buffer that reads back a band of `largest` bytes: whole pixels.
+pub(super) fn staging_bytes(largest: u64) -> u64 {
+    largest.min(STAGING_BYTES / BYTES_PER_PIXEL * BYTES_PER_PIXEL)
+}
+
 /// Copies the bands, in order, over `pixels`.
 pub(super) fn read(
     gpu: &Gpu,
@@ -54,8 +59,7 @@ pub(super) fn read(
     pixels: &mut [PixelWords],
 ) -> Result<(), TraceError> {
     let largest = bands.iter().map(|band| band.buffer.size()).max().unwrap_or(0);
-    let pixel_bytes = BYTES_PER_PIXEL;
-    let piece = largest.min((STAGING_BYTES / pixel_bytes) * pixel_bytes);
+    let piece = staging_bytes(largest);
     let staging = staging_buffer(gpu, piece)?;
     let mut rest: &mut [u8] = bytemuck::cast_slice_mut(pixels);
     for band in bands {

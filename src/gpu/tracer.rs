@@ -108,6 +108,14 @@ impl GpuTracer {
         })
     }
 
+    /// Bytes of the buffers on the device, the one for reading back included.
+    #[must_use]
+    pub fn device_bytes(&self) -> u64 {
+        let films: u64 = self.bands.iter().map(|(band, _)| band.buffer.size()).sum();
+        let scene = size_of::<layout::Scene>() as u64;
+        films + bands::staging_bytes(films) + scene + self.work.size() + self.ledger.size()
+    }
+
     /// Traces `count` samples from `first` on, of the given rows of a band.
     fn dispatch(
         &mut self,
