@@ -6,13 +6,19 @@
 //! angles in radians unless the name says degrees, radiance in the scene's own
 //! unit of W·sr⁻¹·m⁻² per channel (linear, Rec. 709 primaries).
 
+mod camera;
 mod error;
 mod file;
 mod hash;
+mod settings;
+mod sphere;
 
+pub use camera::{Camera, ImageSize};
 pub use error::{Diagnostic, SceneFileError};
 pub use file::{load, parse};
 pub use hash::SceneHash;
+pub use settings::{Estimator, RenderSettings};
+pub use sphere::{Albedo, Exponent, Radiance, Sphere, Surface};
 
 use glam::DVec3;
 
@@ -46,252 +52,6 @@ fn refuse<T>(allowed: impl Into<String>) -> Result<T, Invalid> {
     Err(Invalid(allowed.into()))
 }
 
-/// A pinhole camera with square pixels.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Camera {
-    position: DVec3,
-    forward: DVec3,
-    right: DVec3,
-    up: DVec3,
-    vertical_fov: f64,
-}
-
-impl Camera {
-    /// Looks from `position` towards `look_at`; `vertical_fov` in degrees, in (0, 180).
-    ///
-    /// # Errors
-    /// If a coordinate is not finite or larger than [`MAX_LENGTH`], the camera looks
-    /// at itself, `up` is zero or along the view direction, or the angle is out of range.
-    pub fn new(
-        position: DVec3,
-        look_at: DVec3,
-        up: DVec3,
-        vertical_fov: f64,
-    ) -> Result<Self, Invalid> {
-        check_point(position)?;
-        check_point(look_at)?;
-        check_point(up)?;
-        if !(vertical_fov > 0.0 && vertical_fov < 180.0) {
-            return refuse("an angle in degrees, greater than 0 and less than 180");
-        }
-        let Some(forward) = (look_at - position).try_normalize() else {
-            return refuse("a point other than the camera's position");
-        };
-        // |forward × up| is the sine of the angle between the two; below 1e-9 the
-        // picture's roll would be decided by rounding.
-        let right = match up.try_normalize().map(|up| forward.cross(up)) {
-            Some(right) if right.length() > 1e-9 => right.normalize(),
-            _ => return refuse("a direction that is not zero and not along the view direction"),
-        };
-        Ok(Self {
-            position,
-            forward,
-            right,
-            up: right.cross(forward),
-            vertical_fov: vertical_fov.to_radians(),
-        })
-    }
-
-    /// Where the rays start.
-    #[must_use]
-    pub fn position(&self) -> DVec3 {
-        self.position
-    }
-
-    /// Unit view direction.
-    #[must_use]
-    pub fn forward(&self) -> DVec3 {
-        self.forward
-    }
-
-    /// Unit vector towards the right of the picture.
-    #[must_use]
-    pub fn right(&self) -> DVec3 {
-        self.right
-    }
-
-    /// Unit vector towards the top of the picture.
-    #[must_use]
-    pub fn up(&self) -> DVec3 {
-        self.up
-    }
-
-    /// Full vertical field of view, in radians.
-    #[must_use]
-    pub fn vertical_fov(&self) -> f64 {
-        self.vertical_fov
-    }
-}
-
-/// Width and height of a picture, in pixels; each in 1..=[`MAX_SIDE`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ImageSize {
-    width: u32,
-    height: u32,
-}
-
-impl ImageSize {
-    /// # Errors
-    /// If a side is zero or larger than [`MAX_SIDE`].
-    pub fn new(width: u32, height: u32) -> Result<Self, Invalid> {
-        let allowed = 1..=MAX_SIDE;
-        if !allowed.contains(&width) || !allowed.contains(&height) {
-            return refuse(format!("a whole number from 1 to {MAX_SIDE}"));
-        }
-        Ok(Self { width, height })
-    }
-
-    /// Pixels in a row.
-    #[must_use]
-    pub fn width(self) -> u32 {
-        self.width
-    }
-
-    /// Rows.
-    #[must_use]
-    pub fn height(self) -> u32 {
-        self.height
-    }
-
-    /// Number of pixels; less than 2³².
-    #[must_use]
-    pub fn pixels(self) -> u32 {
-        self.width * self.height
-    }
-}
-
-/// Reflectance ρ per channel, each in [0, 1].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Albedo(DVec3);
-
-impl Albedo {
-    /// # Errors
-    /// If a channel is outside [0, 1] or NaN.
-    pub fn new(rho: DVec3) -> Result<Self, Invalid> {
-        if rho.to_array().iter().all(|c| (0.0..=1.0).contains(c)) {
-            Ok(Self(rho))
-        } else {
-            refuse("an albedo per channel, each from 0 to 1")
-        }
-    }
-
-    /// The three channels.
-    #[must_use]
-    pub fn rgb(self) -> DVec3 {
-        self.0
-    }
-}
-
-/// Emitted radiance per channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Radiance(DVec3);
-
-impl Radiance {
-    /// # Errors
-    /// If a channel is negative, not finite or above [`MAX_RADIANCE`], or the brightest
-    /// is below [`MIN_RADIANCE`].
-    pub fn new(rgb: DVec3) -> Result<Self, Invalid> {
-        let in_range = rgb.to_array().iter().all(|c| (0.0..=MAX_RADIANCE).contains(c));
-        if in_range && rgb.max_element() >= MIN_RADIANCE {
-            Ok(Self(rgb))
-        } else {
-            refuse(format!(
-                "a radiance per channel, each from 0 to {MAX_RADIANCE:e}, the largest at least {MIN_RADIANCE:e}"
-            ))
-        }
-    }
-
-    /// The three channels.
-    #[must_use]
-    pub fn rgb(self) -> DVec3 {
-        self.0
-    }
-}
-
-/// Phong exponent n, in [0, [`MAX_EXPONENT`]].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Exponent(f64);
-
-impl Exponent {
-    /// # Errors
-    /// If `n` is outside the range or NaN.
-    pub fn new(n: f64) -> Result<Self, Invalid> {
-        if (0.0..=MAX_EXPONENT).contains(&n) {
-            Ok(Self(n))
-        } else {
-            refuse(format!("a Phong exponent from 0 to {MAX_EXPONENT:e}"))
-        }
-    }
-
-    /// The exponent.
-    #[must_use]
-    pub fn get(self) -> f64 {
-        self.0
-    }
-}
-
-/// What a sphere's surface does with light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Surface {
-    /// Emits on both sides, reflects nothing, ends the path.
-    Emitter(Radiance),
-    /// Lambertian: `f_r` = ρ/π.
-    Diffuse(Albedo),
-    /// Phong lobe about the mirror direction: `f_r` = ρ(n+1)cosⁿα/2π.
-    Glossy(Albedo, Exponent),
-}
-
-/// A sphere with its surface.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sphere {
-    name: Option<String>,
-    center: DVec3,
-    radius: f64,
-    surface: Surface,
-}
-
-impl Sphere {
-    /// # Errors
-    /// If the centre has a coordinate that is not finite or above [`MAX_LENGTH`], or
-    /// the radius is outside [[`MIN_RADIUS`], [`MAX_LENGTH`]].
-    pub fn new(center: DVec3, radius: f64, surface: Surface) -> Result<Self, Invalid> {
-        check_point(center)?;
-        check_radius(radius)?;
-        Ok(Self { name: None, center, radius, surface })
-    }
-
-    /// Names the sphere for messages.
-    #[must_use]
-    pub fn named(mut self, name: impl Into<String>) -> Self {
-        self.name = Some(name.into());
-        self
-    }
-
-    /// The name given in the scene file.
-    #[must_use]
-    pub fn name(&self) -> Option<&str> {
-        self.name.as_deref()
-    }
-
-    /// Centre.
-    #[must_use]
-    pub fn center(&self) -> DVec3 {
-        self.center
-    }
-
-    /// Radius, positive.
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// What the surface does with light.
-    #[must_use]
-    pub fn surface(&self) -> Surface {
-        self.surface
-    }
-}
-
 /// Checks one point or vector of the scene file.
 ///
 /// # Errors
@@ -313,115 +73,6 @@ pub fn check_radius(radius: f64) -> Result<(), Invalid> {
         Ok(())
     } else {
         refuse(format!("a radius from {MIN_RADIUS:e} to {MAX_LENGTH:e}"))
-    }
-}
-
-/// How paths are built; each estimator has the same mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Estimator {
-    /// The source's: uniform hemisphere at diffuse surfaces, Phong lobe at glossy
-    /// ones, light counted only where a path hits it by itself.
-    #[default]
-    Implicit,
-}
-
-impl Estimator {
-    /// The name used in scene files, on the command line and in film headers.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Implicit => "implicit",
-        }
-    }
-}
-
-impl std::str::FromStr for Estimator {
-    type Err = Invalid;
-
-    fn from_str(name: &str) -> Result<Self, Invalid> {
-        match name {
-            "implicit" => Ok(Self::Implicit),
-            _ => refuse("an estimator; this version has \"implicit\""),
-        }
-    }
-}
-
-/// The `[render]` table: what a render does unless the command line says otherwise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct RenderSettings {
-    spp: u64,
-    bounces: u32,
-    estimator: Estimator,
-    seed: u32,
-}
-
-impl Default for RenderSettings {
-    fn default() -> Self {
-        Self { spp: 256, bounces: 2, estimator: Estimator::Implicit, seed: 0 }
-    }
-}
-
-impl RenderSettings {
-    /// Replaces the samples per pixel.
-    ///
-    /// # Errors
-    /// If `spp` is outside 1..=[`MAX_SPP`].
-    pub fn with_spp(mut self, spp: u64) -> Result<Self, Invalid> {
-        if !(1..=MAX_SPP).contains(&spp) {
-            return refuse(format!("a whole number from 1 to {MAX_SPP}"));
-        }
-        self.spp = spp;
-        Ok(self)
-    }
-
-    /// Replaces the most scatterings of one path.
-    ///
-    /// # Errors
-    /// If `bounces` is above [`MAX_BOUNCES`].
-    pub fn with_bounces(mut self, bounces: u32) -> Result<Self, Invalid> {
-        if bounces > MAX_BOUNCES {
-            return refuse(format!("a whole number from 0 to {MAX_BOUNCES}"));
-        }
-        self.bounces = bounces;
-        Ok(self)
-    }
-
-    /// Replaces the estimator.
-    #[must_use]
-    pub fn with_estimator(mut self, estimator: Estimator) -> Self {
-        self.estimator = estimator;
-        self
-    }
-
-    /// Replaces the seed of the random numbers.
-    #[must_use]
-    pub fn with_seed(mut self, seed: u32) -> Self {
-        self.seed = seed;
-        self
-    }
-
-    /// Samples per pixel.
-    #[must_use]
-    pub fn spp(self) -> u64 {
-        self.spp
-    }
-
-    /// Most scatterings of one path.
-    #[must_use]
-    pub fn bounces(self) -> u32 {
-        self.bounces
-    }
-
-    /// The estimator.
-    #[must_use]
-    pub fn estimator(self) -> Estimator {
-        self.estimator
-    }
-
-    /// Seed of the random numbers.
-    #[must_use]
-    pub fn seed(self) -> u32 {
-        self.seed
     }
 }
 
@@ -488,6 +139,6 @@ impl Scene {
     /// Whether any sphere emits; without one the picture is exactly zero.
     #[must_use]
     pub fn has_lights(&self) -> bool {
-        self.spheres.iter().any(|s| matches!(s.surface, Surface::Emitter(_)))
+        self.spheres.iter().any(|s| matches!(s.surface(), Surface::Emitter(_)))
     }
 }

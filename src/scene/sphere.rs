@@ -1,0 +1,136 @@
+//! Spheres and what their surfaces do with light.
+
+use super::{Invalid, MAX_EXPONENT, MAX_RADIANCE, MIN_RADIANCE, check_point, check_radius, refuse};
+use glam::DVec3;
+
+/// Reflectance ρ per channel, each in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Albedo(DVec3);
+
+impl Albedo {
+    /// # Errors
+    /// If a channel is outside [0, 1] or NaN.
+    pub fn new(rho: DVec3) -> Result<Self, Invalid> {
+        if rho.to_array().iter().all(|c| (0.0..=1.0).contains(c)) {
+            Ok(Self(rho))
+        } else {
+            refuse("an albedo per channel, each from 0 to 1")
+        }
+    }
+
+    /// The three channels.
+    #[must_use]
+    pub fn rgb(self) -> DVec3 {
+        self.0
+    }
+}
+
+/// Emitted radiance per channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Radiance(DVec3);
+
+impl Radiance {
+    /// # Errors
+    /// If a channel is negative, not finite or above [`MAX_RADIANCE`], or the brightest
+    /// is below [`MIN_RADIANCE`].
+    pub fn new(rgb: DVec3) -> Result<Self, Invalid> {
+        let in_range = rgb.to_array().iter().all(|c| (0.0..=MAX_RADIANCE).contains(c));
+        if in_range && rgb.max_element() >= MIN_RADIANCE {
+            Ok(Self(rgb))
+        } else {
+            refuse(format!(
+                "a radiance per channel, each from 0 to {MAX_RADIANCE:e}, the largest at least {MIN_RADIANCE:e}"
+            ))
+        }
+    }
+
+    /// The three channels.
+    #[must_use]
+    pub fn rgb(self) -> DVec3 {
+        self.0
+    }
+}
+
+/// Phong exponent n, in [0, [`MAX_EXPONENT`]].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exponent(f64);
+
+impl Exponent {
+    /// # Errors
+    /// If `n` is outside the range or NaN.
+    pub fn new(n: f64) -> Result<Self, Invalid> {
+        if (0.0..=MAX_EXPONENT).contains(&n) {
+            Ok(Self(n))
+        } else {
+            refuse(format!("a Phong exponent from 0 to {MAX_EXPONENT:e}"))
+        }
+    }
+
+    /// The exponent.
+    #[must_use]
+    pub fn get(self) -> f64 {
+        self.0
+    }
+}
+
+/// What a sphere's surface does with light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Surface {
+    /// Emits on both sides, reflects nothing, ends the path.
+    Emitter(Radiance),
+    /// Lambertian: `f_r` = ρ/π.
+    Diffuse(Albedo),
+    /// Phong lobe about the mirror direction: `f_r` = ρ(n+1)cosⁿα/2π.
+    Glossy(Albedo, Exponent),
+}
+
+/// A sphere with its surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sphere {
+    name: Option<String>,
+    center: DVec3,
+    radius: f64,
+    surface: Surface,
+}
+
+impl Sphere {
+    /// # Errors
+    /// If the centre has a coordinate that is not finite or above [`MAX_LENGTH`], or
+    /// the radius is outside [[`MIN_RADIUS`], [`MAX_LENGTH`]].
+    pub fn new(center: DVec3, radius: f64, surface: Surface) -> Result<Self, Invalid> {
+        check_point(center)?;
+        check_radius(radius)?;
+        Ok(Self { name: None, center, radius, surface })
+    }
+
+    /// Names the sphere for messages.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// The name given in the scene file.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
+    /// Centre.
+    #[must_use]
+    pub fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    /// Radius, positive.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// What the surface does with light.
+    #[must_use]
+    pub fn surface(&self) -> Surface {
+        self.surface
+    }
+}
