@@ -17,7 +17,7 @@ impl Camera {
     /// Looks from `position` towards `look_at`; `vertical_fov` in degrees, in (0, 180).
     ///
     /// # Errors
-    /// If a coordinate is not finite or larger than [`MAX_LENGTH`], the camera looks
+    /// If a coordinate is not finite or larger than [`MAX_LENGTH`](super::MAX_LENGTH), the camera looks
     /// at itself, `up` is zero or along the view direction, or the angle is out of range.
     pub fn new(
         position: DVec3,

@@ -95,8 +95,8 @@ pub struct Sphere {
 
 impl Sphere {
     /// # Errors
-    /// If the centre has a coordinate that is not finite or above [`MAX_LENGTH`], or
-    /// the radius is outside [[`MIN_RADIUS`], [`MAX_LENGTH`]].
+    /// If the centre has a coordinate that is not finite or above [`MAX_LENGTH`](super::MAX_LENGTH), or
+    /// the radius is outside [[`MIN_RADIUS`](super::MIN_RADIUS), [`MAX_LENGTH`](super::MAX_LENGTH)].
     pub fn new(center: DVec3, radius: f64, surface: Surface) -> Result<Self, Invalid> {
         check_point(center)?;
         check_radius(radius)?;
