@@ -8,7 +8,7 @@ use statrs::function::erf::{erfc, erfc_inv};
 /// Tiles have this many pixels on a side, fewer at the picture's edge.
 const TILE: usize = 16;
 
-/// A z-test needs this many effective hits on either side. With 1000 the mean of
+/// A z-test needs this many effective hits on one side; the other then expects as many. With 1000 the mean of
 /// Bernoulli hits has skewness 0.03, and the normal tail at five standard errors is
 /// off by exp(0.03·5³/6), less than a factor of two.
 const MIN_HITS: f64 = 1000.0;
@@ -125,7 +125,7 @@ fn add(to: &mut [Group; 2], other: &[Group; 2]) {
 }
 
 fn enough(sides: &[Group; 2]) -> bool {
-    sides.iter().all(|side| side.hits() >= MIN_HITS)
+    sides.iter().any(|side| side.hits() >= MIN_HITS)
 }
 
 fn deviation([a, b]: &[Group; 2]) -> Deviation {

@@ -1,0 +1,10 @@
+//! The program as its users meet it: the real binary, run in fresh folders.
+
+mod arguments;
+mod candor;
+mod devices;
+mod films;
+mod pictures;
+#[cfg(unix)]
+mod signals;
+mod streams;

@@ -1,0 +1,177 @@
+//! Means, error bars and comparisons against hand-made films and known statistics.
+
+use candor::estimate::{compare, estimate, p_value, pair, summarize, z_limit};
+use candor::film::{Film, PixelSums, SampleScale};
+use candor::scene::ImageSize;
+
+/// Independent uniform numbers (splitmix64, Steele et al. 2014), for synthetic samples.
+struct Uniform(u64);
+
+impl Uniform {
+    #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// A film whose pixels get the samples that `sample` makes for (pixel, index).
+fn film(width: u32, height: u32, n: u64, mut sample: impl FnMut(u32, u64) -> [f32; 3]) -> Film {
+    let size = ImageSize::new(width, height).expect("a size");
+    let scale = SampleScale::from_bound(64.0);
+    let mut film = Film::new(size, scale);
+    film.claim(0..n).expect("an empty film");
+    for (pixel, words) in (0..).zip(film.pixels_mut()) {
+        let mut sums = PixelSums::of(words);
+        for index in 0..n {
+            let rgb = sample(pixel, index);
+            assert!(scale.admits(rgb));
+            sums.add(rgb, scale);
+        }
+        *words = sums.words();
+    }
+    film
+}
+
+/// Bernoulli hits of brightness 8 with probability `p`, grey.
+fn hits(seed: u64, side: u32, n: u64, p: impl Fn(u32) -> f64) -> Film {
+    let mut random = Uniform(seed);
+    film(side, side, n, |pixel, _| [if random.next() < p(pixel) { 8.0 } else { 0.0 }; 3])
+}
+
+/// Samples 1, 2, 3, 6 of grey: mean 3, variance 14/3, by hand; the film's step of
+/// 2^-57 is far below the tolerance.
+#[test]
+fn mean_and_variance_are_those_of_the_samples() {
+    let film = film(1, 1, 4, |_, i| [[1.0, 2.0, 3.0, 6.0][i as usize]; 3]);
+    let pixel = estimate(&film, &film.pixels()[0]);
+    assert!(pixel.rgb.iter().all(|c| (c - 3.0).abs() < 1e-14), "{pixel:?}");
+    assert!((pixel.luminance - 3.0).abs() < 1e-14, "{pixel:?}");
+    assert!((pixel.variance - 14.0 / 3.0).abs() < 1e-12, "{pixel:?}");
+    assert!((pixel.standard_error(4) - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12);
+    assert!((pixel.hits - 144.0 / 50.0).abs() < 1e-12, "(1+2+3+6)²/(1+4+9+36): {pixel:?}");
+}
+
+/// Whatever its value and channels, a constant has variance exactly 0.
+#[test]
+fn a_constant_has_no_variance() {
+    let mut random = Uniform(1);
+    for n in [2, 3, 1000] {
+        for _ in 0..200 {
+            let exponent = -30.0 + 36.0 * random.next();
+            #[expect(clippy::cast_possible_truncation, reason = "any f32 will do")]
+            let rgb = [(); 3].map(|()| (random.next() * exponent.exp2()).min(64.0) as f32);
+            let film = film(1, 1, n, |_, _| rgb);
+            let variance = estimate(&film, &film.pixels()[0]).variance;
+            assert_eq!(variance.to_bits(), 0.0_f64.to_bits(), "{rgb:?} {n} times");
+        }
+    }
+}
+
+#[test]
+fn pixels_without_hits_are_unproven_and_two_samples_are_needed() {
+    let dark = film(2, 1, 8, |pixel, i| [if pixel == 0 && i == 3 { 1.0 } else { 0.0 }; 3]);
+    let summary = summarize(&dark);
+    assert_eq!((summary.unproven_pixels, summary.coarse_pixels), (1, 0));
+    assert!(summary.relative_error.is_some_and(|e| e > 0.0));
+    assert_eq!(summarize(&film(1, 1, 1, |_, _| [1.0; 3])).relative_error, None);
+    assert_eq!(summarize(&film(4, 4, 8, |_, _| [0.0; 3])).relative_error, None);
+}
+
+/// Bernoulli(p) of brightness 8: σ²/n relative to the mean is (1-p)/(pn), so ε is its
+/// root. The estimate over 64² pixels of 64 samples has a relative standard error of
+/// about √((1/p)/(4·64·4096)) = 0.4 %; the bound is six of those.
+#[test]
+fn the_relative_error_is_that_of_bernoulli_hits() {
+    let p = 0.0625;
+    let summary = summarize(&hits(2, 64, 64, |_| p));
+    let expected = ((1.0 - p) / (p * 64.0)).sqrt();
+    let found = summary.relative_error.expect("a lit picture");
+    assert!((found / expected - 1.0).abs() < 0.024, "{found} for {expected}");
+}
+
+#[test]
+fn coarse_pixels_are_counted() {
+    let step = SampleScale::from_bound(64.0).step();
+    #[expect(clippy::cast_possible_truncation, reason = "powers of two")]
+    let value = |pixel: u32| if pixel == 0 { 9e5 * step } else { 1.1e6 * step } as f32;
+    let summary = summarize(&film(2, 1, 4, |pixel, _| [value(pixel); 3]));
+    assert_eq!(summary.coarse_pixels, 1);
+}
+
+/// Twelve pairs of films of the same picture: the tiles' z are standard normal, so the
+/// mean of 12·64 of them has standard error 0.036 and their mean square one of
+/// √(2/768) = 0.051; bounds at 4.9 of those (1e-6).
+#[test]
+fn equal_pictures_agree_with_standard_normal_deviations() {
+    let (mut count, mut sum, mut squares) = (0.0, 0.0, 0.0);
+    for seed in 0..12 {
+        let make = |seed| hits(seed, 128, 64, |pixel| 0.1 + 0.1 * f64::from(pixel % 7));
+        let found = compare(&make(100 + 2 * seed), &make(101 + 2 * seed));
+        assert!(found.conclusive && !found.disagrees(1e-6), "{found:?}");
+        #[expect(clippy::cast_precision_loss, reason = "a count of tiles")]
+        let tiles = found.tiles as f64;
+        count += tiles;
+        sum += tiles * found.mean_z;
+        squares += tiles * found.rms_z * found.rms_z;
+    }
+    assert!((sum / count).abs() < 4.9 / f64::sqrt(count), "mean z {}", sum / count);
+    assert!((squares / count - 1.0).abs() < 4.9 * f64::sqrt(2.0 / count), "{}", squares / count);
+}
+
+/// The injected faults: 2 % more hits everywhere (over 10 standard errors of the image), and
+/// a quarter more in a single tile (11 of its standard errors), which the image's mean hides.
+#[test]
+fn a_brighter_picture_and_a_brighter_tile_are_rejected() {
+    let even = |seed| hits(seed, 128, 64, |_| 0.2);
+    let brighter = compare(&even(1), &hits(2, 128, 64, |_| 0.2 * 1.02));
+    assert!(brighter.image.p < 1e-7 && brighter.disagrees(1e-6), "{brighter:?}");
+    let in_first_tile = |pixel: u32| pixel % 128 < 16 && pixel / 128 < 16;
+    let spot = hits(3, 128, 64, |pixel| if in_first_tile(pixel) { 0.25 } else { 0.2 });
+    let spotted = compare(&even(4), &spot);
+    assert!(spotted.image.p > 1e-6 && spotted.worst.p < 1e-7, "{spotted:?}");
+    assert!(spotted.disagrees(1e-6));
+}
+
+#[test]
+fn too_few_hits_are_not_a_verdict() {
+    let found = compare(&hits(1, 16, 4, |_| 0.1), &hits(2, 16, 4, |_| 0.1));
+    assert!(!found.conclusive, "{found:?}");
+    let dark = || film(4, 4, 8, |_, _| [0.0; 3]);
+    let both_dark = compare(&dark(), &dark());
+    assert!(both_dark.conclusive && !both_dark.disagrees(1e-6), "{both_dark:?}");
+}
+
+/// A film that stayed dark where another has its thousands of hits is no case of too few.
+#[test]
+fn darkness_differs_from_light() {
+    let found = compare(&film(64, 64, 64, |_, _| [0.0; 3]), &hits(1, 64, 64, |_| 0.2));
+    assert!(found.conclusive && found.disagrees(1e-6), "{found:?}");
+}
+
+/// Pairing sees a channel that is 0.3 % too bright, and does not mind noise that both share.
+#[test]
+fn pairing_finds_the_bias_of_a_channel() {
+    let make = |blue: f32| {
+        let mut random = Uniform(7);
+        film(32, 32, 64, |_, _| if random.next() < 0.1 { [8.0, 8.0, blue] } else { [0.0; 3] })
+    };
+    let same = pair(&make(8.0), &make(8.0));
+    assert_eq!((same.bias, same.error), ([0.0; 3], [0.0; 3]));
+    let biased = pair(&make(8.0 * 1.003), &make(8.0));
+    assert!((biased.bias[2] - 0.003).abs() < 1e-6, "{biased:?}");
+    assert!(biased.bias[..2] == [0.0; 2] && biased.exceeds(1e-3, 1e-6), "{biased:?}");
+    assert!(!biased.exceeds(4e-3, 1e-6), "{biased:?}");
+}
+
+/// Values of the standard normal's tail from Abramowitz & Stegun, table 26.2.
+#[test]
+fn tails_of_the_normal() {
+    for (z, p) in [(0.0, 1.0), (1.0, 0.317_310_507_863), (5.0, 5.733_031_437_58e-7)] {
+        assert!((p_value(z) / p - 1.0).abs() < 1e-9, "{z}");
+        assert!((z_limit(p) - z).abs() < 1e-8, "{p}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Focus, extent and sides: what is decided about a scene before anything is traced.
+
+use candor::bound::sample_scale;
+use candor::effects::Effects;
+use candor::kernel::{Form, KernelUnits, pack};
+use candor::scene::{
+    Albedo, Camera, Exponent, ImageSize, Radiance, RenderSettings, Scene, Sphere, Surface, load,
+};
+use candor::viewpoint::Viewpoint;
+use glam::DVec3;
+
+fn white() -> Surface {
+    Surface::Diffuse(Albedo::new(DVec3::ONE).expect("an albedo"))
+}
+
+fn sphere(center: [f64; 3], radius: f64, surface: Surface) -> Sphere {
+    Sphere::new(DVec3::from(center), radius, surface).expect("a sphere")
+}
+
+fn scene(position: [f64; 3], look_at: [f64; 3], spheres: Vec<Sphere>) -> Scene {
+    let camera = Camera::new(position.into(), look_at.into(), DVec3::Y, 45.0).expect("a camera");
+    let size = ImageSize::new(8, 8).expect("a size");
+    Scene::new(camera, size, RenderSettings::default(), spheres)
+}
+
+fn classic(wall: f64) -> Scene {
+    let text = std::fs::read_to_string("scenes/two-spheres.toml").expect("the classic scene");
+    let text = text
+        .replace("100003.0", &format!("{:?}", wall + 3.0))
+        .replace("100004.0", &format!("{:?}", wall + 4.0))
+        .replace("100000.0", &format!("{wall:?}"));
+    candor::scene::parse("classic", &text).expect("a scene")
+}
+
+/// The box of §3 of DESIGN.md, by hand: x and y from -3 to 3, z from the back wall at -4
+/// to the camera at 9.
+#[test]
+fn the_classic_scene_has_the_box_as_its_extent_whatever_its_walls() {
+    for wall in [1e3, 1e5, 1e7, 1e9] {
+        let viewpoint = Viewpoint::of(&classic(wall));
+        assert!(viewpoint.focus().distance(DVec3::new(0.0, 0.0, 2.5)) < 1e-2, "{viewpoint:?}");
+        let diagonal = DVec3::new(6.0, 6.0, 13.0).length() / 2.0;
+        assert!((viewpoint.extent() - diagonal).abs() < 1e-2, "{viewpoint:?}");
+    }
+    assert_eq!(load("scenes/two-spheres.toml".as_ref()).expect("a scene"), classic(1e5));
+}
+
+#[test]
+fn walls_are_anchored_and_balls_are_factored() {
+    let scene = classic(1e5);
+    let packed = pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits");
+    let walls = 1..6;
+    for (i, form) in packed.forms.iter().enumerate() {
+        let expected = if walls.contains(&i) { Form::Anchored } else { Form::Factored };
+        assert_eq!(*form, expected, "sphere {i}");
+    }
+    assert_eq!((packed.scene.factored_count, packed.scene.sphere_count), (3, 8));
+    let order: Vec<u32> = packed.scene.spheres[..8].iter().map(|s| s.index).collect();
+    assert_eq!(order, [0, 6, 7, 1, 2, 3, 4, 5]);
+}
+
+/// Scaling by powers of two and translation by what `f64` adds exactly leave the packed
+/// scene as it is, to the bit.
+#[test]
+fn the_packed_scene_does_not_depend_on_where_and_how_large_the_scene_is() {
+    let build = |scale: f64, shift: f64| {
+        let place = |p: [f64; 3]| p.map(|x| x * scale + shift);
+        let spheres = vec![
+            sphere(place([1.0, 2.0, -3.0]), 0.5 * scale, white()),
+            sphere(place([0.0, -1024.0, 0.0]), 1020.0 * scale, white()),
+        ];
+        let scene = scene(place([0.0, 0.0, 8.0]), place([0.0, 0.0, 0.0]), spheres);
+        pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits").scene
+    };
+    let reference = build(1.0, 0.0);
+    for scale in [2.0_f64.powi(-20), 0.25, 2.0_f64.powi(20)] {
+        assert_eq!(build(scale, 0.0), reference, "scaled by {scale}");
+    }
+    assert_eq!(build(1.0, 65_536.0), reference, "translated");
+}
+
+#[test]
+fn a_far_camera_does_not_move_the_focus() {
+    let ball = vec![sphere([0.0, 0.0, 0.0], 1.0, white())];
+    let viewpoint = Viewpoint::of(&scene([0.0, 0.0, 1e6], [0.0; 3], ball));
+    assert!(viewpoint.focus().length() < 1e-9, "{viewpoint:?}");
+    assert!((viewpoint.extent() - 3.0_f64.sqrt()).abs() < 1e-9, "{viewpoint:?}");
+}
+
+#[test]
+fn sides_follow_the_camera() {
+    let at = |z: f64| {
+        let spheres = vec![
+            sphere([0.0; 3], 10.0, white()),
+            sphere([0.0, 0.0, z], 1.0, white()),
+            sphere([20.0, 0.0, 0.0], 1.0, white()),
+        ];
+        scene([0.0, 0.0, z], [0.0, 0.0, z - 1.0], spheres)
+    };
+    let inside = |scene: &Scene| Viewpoint::of(scene).inside().to_vec();
+    assert_eq!(inside(&at(5.0)), [true, true, false]);
+    assert_eq!(inside(&at(15.0)), [false, true, false]);
+    assert!(Effects::of(&at(5.0), &Viewpoint::of(&at(5.0))).interior);
+}
+
+/// Standing on a surface, the camera is on the side that it looks to, and starts there.
+#[test]
+fn a_camera_on_a_surface_is_on_the_side_that_it_looks_to() {
+    let ball = || vec![sphere([5.0, 0.0, 0.0], 0.1, white()), sphere([0.0; 3], 1.0, white())];
+    for off in [0.0, 1e-7, -1e-7] {
+        let position = [0.0, 0.0, 1.0 + off];
+        let outward = Viewpoint::of(&scene(position, [0.0, 0.0, 9.0], ball()));
+        assert_eq!((outward.inside()[1], outward.start()), (false, Some(1)), "{off}");
+        let inward = Viewpoint::of(&scene(position, [0.0, 0.0, -9.0], ball()));
+        assert_eq!((inward.inside()[1], inward.start()), (true, Some(1)), "{off}");
+    }
+    let above = Viewpoint::of(&scene([0.0, 0.0, 1.001], [0.0, 0.0, -9.0], ball()));
+    assert_eq!((above.inside()[1], above.start()), (false, None));
+}
+
+#[test]
+fn effects_are_what_the_surfaces_are() {
+    let gloss = Surface::Glossy(
+        Albedo::new(DVec3::ONE).expect("an albedo"),
+        Exponent::new(3.0).expect("an exponent"),
+    );
+    let lamp = Surface::Emitter(Radiance::new(DVec3::ONE).expect("a radiance"));
+    let effects = |surface| {
+        let s = scene([0.0, 0.0, 9.0], [0.0; 3], vec![sphere([0.0; 3], 1.0, surface)]);
+        let found = Effects::of(&s, &Viewpoint::of(&s));
+        (found.diffuse, found.glossy, found.interior)
+    };
+    assert_eq!(effects(white()), (true, false, false));
+    assert_eq!(effects(gloss), (false, true, false));
+    assert_eq!(effects(lamp), (false, false, false));
+}
+
+/// §6 of DESIGN.md by hand: 10·(2·0.75)² and the rounding's share, so that the next power
+/// of two above 22.5 is 2⁵ and the shift 64 - 5.
+#[test]
+fn the_bound_is_the_product_of_the_largest_weights() {
+    let lamp = Surface::Emitter(Radiance::new(DVec3::splat(10.0)).expect("a radiance"));
+    let grey = Surface::Diffuse(Albedo::new(DVec3::splat(0.75)).expect("an albedo"));
+    let spheres = vec![sphere([0.0; 3], 1.0, lamp), sphere([3.0, 0.0, 0.0], 1.0, grey)];
+    let scale = sample_scale(&scene([0.0, 0.0, 9.0], [0.0; 3], spheres));
+    assert!((f64::from(scale.bound()) / 22.5 - 1.0).abs() < 4e-6, "{scale:?}");
+    assert!(f64::from(scale.bound()) > 22.5);
+    assert_eq!(scale.shift(), 64 - 5);
+    assert!(scale.admits([scale.bound(), 0.0, 1.0]));
+    for bad in [scale.bound().next_up(), -1e-30, f32::NAN, f32::INFINITY] {
+        assert!(!scale.admits([0.0, bad, 0.0]), "{bad}");
+    }
+}
+
+#[test]
+fn kernel_units_put_the_extent_between_one_and_two() {
+    for extent_of in [1e-6, 3.0, 1e6] {
+        let ball = vec![sphere([0.0; 3], extent_of, white())];
+        let viewpoint = Viewpoint::of(&scene([0.0, 0.0, 9.0], [0.0; 3], ball));
+        let extent = KernelUnits::of(&viewpoint).length(viewpoint.extent());
+        assert!((1.0..2.0).contains(&extent), "{extent}");
+    }
+}
