@@ -5,6 +5,8 @@
 //! down slows all of them; ratios are taken within a round. Where g++ is there, the
 //! yardstick `benches/limit.cpp` (the same estimator by hand in AVX2) runs beside.
 
+#![allow(clippy::cast_precision_loss, reason = "rates and ratios for show")]
+
 use candor::bound::sample_scale;
 use candor::effects::Effects;
 use candor::gpu::{Adapter, Gpu, GpuTracer, adapters};

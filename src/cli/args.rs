@@ -1,12 +1,16 @@
 //! Arguments, as typed.
 
-use crate::scene::{Estimator, ImageSize, MAX_SPP};
+use crate::film::SampleRanges;
+use crate::scene::{Estimator, ImageSize, Invalid, MAX_SPP};
 use clap::{Args, Parser, Subcommand};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
+
+/// More threads than this are a typing mistake, and would take the machine down.
+const MAX_THREADS: NonZeroUsize = NonZeroUsize::new(1024).unwrap();
 
 /// A headless path tracer for scenes of spheres that states its own error.
 ///
@@ -51,7 +55,7 @@ pub(super) struct CommonArgs {
     #[arg(long, value_name = "S")]
     pub seed: Option<u32>,
     /// Estimator; this version has "implicit".
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", value_parser = parse_estimator)]
     pub estimator: Option<Estimator>,
     /// Most scatterings of one path; default: the scene's, or 2.
     #[arg(long, value_name = "K")]
@@ -64,7 +68,7 @@ pub(super) struct CommonArgs {
     #[arg(long, value_name = "WHAT", default_value = "auto")]
     pub device: DeviceChoice,
     /// Threads of the CPU twin and of software Vulkan; default: all cores.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse_threads)]
     pub threads: Option<NonZeroUsize>,
     /// Neither progress nor messages on stderr, errors excepted.
     #[arg(long)]
@@ -136,9 +140,24 @@ fn parse_size(text: &str) -> Result<ImageSize, String> {
 fn parse_samples(text: &str) -> Result<Range<u64>, String> {
     let ends = text.split_once("..").and_then(|(a, b)| Some(a.parse().ok()?..b.parse().ok()?));
     match ends {
-        Some(range) if range.start < range.end => Ok(range),
+        Some(range) if range.start < range.end => {
+            // Refused here, before the work: more than a film can hold.
+            let fits = SampleRanges::default().insert(range.clone());
+            fits.map(|()| range).map_err(|error| error.to_string())
+        }
         Some(_) => Err("the range is empty; the end must be larger than the start".to_owned()),
         None => Err("expected A..B with whole numbers, such as 0..256".to_owned()),
+    }
+}
+
+fn parse_estimator(text: &str) -> Result<Estimator, String> {
+    text.parse().map_err(|allowed: Invalid| format!("expected {allowed}"))
+}
+
+fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    match text.parse() {
+        Ok(threads) if threads <= MAX_THREADS => Ok(threads),
+        _ => Err(format!("expected a whole number from 1 to {MAX_THREADS}")),
     }
 }
 
@@ -179,7 +198,7 @@ mod tests {
     #[test]
     fn sample_ranges() {
         assert_eq!(parse_samples("3..17"), Ok(3..17));
-        for bad in ["3", "..17", "3..", "5..5", "7..5", "a..b", "-1..5", "3..=5"] {
+        for bad in ["3", "..17", "3..", "5..5", "7..5", "a..b", "-1..5", "3..=5", "0..4294967297"] {
             assert!(parse_samples(bad).is_err(), "{bad}");
         }
     }

@@ -1,15 +1,17 @@
 //! `candor devices`: what can render here.
 
-use super::DONE;
+use super::{DONE, Refusal, streams};
 use crate::gpu::adapters;
 
-pub(super) fn run() -> u8 {
+pub(super) fn run() -> Result<u8, Refusal> {
     let adapters = adapters();
-    for adapter in &adapters {
-        println!("{}\n    {}; {}", adapter.name(), adapter.kind(), adapter.driver());
-    }
-    println!("cpu\n    the f64 reference on this machine's processor; always there");
+    let mut lines: Vec<String> = adapters
+        .iter()
+        .map(|a| format!("{}\n    {}; {}", a.name(), a.kind(), a.driver()))
+        .collect();
+    lines.push("cpu\n    the f64 reference on this machine's processor; always there".to_owned());
     let auto = adapters.first().map_or("cpu", |adapter| adapter.name());
-    println!("\n--device auto takes: {auto}");
-    DONE
+    lines.push(format!("\n--device auto takes: {auto}"));
+    streams::results(&lines.join("\n"))?;
+    Ok(DONE)
 }

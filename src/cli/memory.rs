@@ -1,6 +1,6 @@
 //! Whether a picture fits into memory, asked before anything is allocated.
 
-use super::{Refusal, refuse};
+use super::{Refusal, refuse, units};
 use crate::film::BYTES_PER_PIXEL;
 use crate::scene::ImageSize;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
@@ -25,15 +25,9 @@ pub(super) fn check(size: ImageSize, needed: u64) -> Result<(), Refusal> {
     let (width, height) = (size.width(), size.height());
     refuse(format_args!(
         "{width}x{height} pixels need {} of memory, {} are available; render a smaller --size",
-        gigabytes(needed),
-        gigabytes(available)
+        units::bytes(needed),
+        units::bytes(available)
     ))
-}
-
-/// A number of bytes for a message.
-#[expect(clippy::cast_precision_loss, reason = "shown with two decimals")]
-pub(super) fn gigabytes(bytes: u64) -> String {
-    format!("{:.2} GB", bytes as f64 / 1e9)
 }
 
 /// Free memory of this machine or of the container; where the system does not say, no

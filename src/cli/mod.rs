@@ -11,6 +11,8 @@ mod output;
 mod progress;
 mod render;
 mod setup;
+mod streams;
+mod units;
 mod verify;
 
 use args::{Cli, Command};
@@ -51,12 +53,12 @@ pub fn main() -> ExitCode {
     let ended = std::panic::catch_unwind(|| match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Verify(args) => verify::run(args),
-        Command::Devices => Ok(devices::run()),
+        Command::Devices => devices::run(),
     });
     match ended {
         Ok(Ok(code)) => ExitCode::from(code),
         Ok(Err(Refusal(message))) => {
-            eprintln!("{message}");
+            streams::message(&message);
             ExitCode::from(REFUSED)
         }
         Err(_) => ExitCode::from(REFUSED),
@@ -68,7 +70,7 @@ fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string).unwrap_or_default();
         let cause = panic.payload_as_str().unwrap_or("unknown");
-        eprintln!("error: this is a mistake in candor, at {place}: {cause}");
+        streams::message(&format!("error: this is a mistake in candor, at {place}: {cause}"));
     }));
 }
 

@@ -1,6 +1,6 @@
 //! Progress on stderr: a bar on a terminal, plain lines elsewhere, nothing if quiet.
 
-use super::on_terminal;
+use super::{on_terminal, streams, units};
 use crate::render::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
@@ -38,7 +38,7 @@ impl Reporter {
         match &self.style {
             Style::Quiet => {}
             Style::Bar(bar) => bar.println(text),
-            Style::Lines { .. } => eprintln!("{text}"),
+            Style::Lines { .. } => streams::message(text),
         }
     }
 
@@ -58,7 +58,7 @@ impl Reporter {
             }
             Style::Lines { next } => {
                 if progress.elapsed >= *next {
-                    eprintln!("{text}");
+                    streams::message(&text);
                     *next = progress.elapsed + LINE_EVERY;
                 }
             }
@@ -72,12 +72,7 @@ impl Reporter {
         }
     }
 
-    #[expect(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "for show"
-    )]
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
     fn text(&self, progress: &Progress) -> String {
         let seconds = progress.elapsed.as_secs_f64().max(1e-9);
         let rate = progress.done as f64 * f64::from(self.pixels) / seconds;
@@ -90,12 +85,7 @@ impl Reporter {
         let by_samples = seconds * (self.planned - progress.done) as f64 / progress.done as f64;
         let by_time = self.limit.map_or(f64::INFINITY, |l| (l.as_secs_f64() - seconds).max(0.0));
         let left = by_samples.min(by_time);
-        format!(
-            "{} spp, {:.1} Msamples/s{error}, {} left",
-            progress.done,
-            rate / 1e6,
-            humantime::format_duration(Duration::from_secs(left.ceil().min(1e9) as u64))
-        )
+        format!("{} spp, {}{error}, {} left", progress.done, units::rate(rate), units::time(left))
     }
 
     /// Thousandths of the render that are done.

@@ -1,9 +1,9 @@
 //! `candor render`: from a scene file to pictures.
 
-use super::args::RenderArgs;
+use super::args::{DeviceChoice, RenderArgs};
 use super::output::Outputs;
 use super::progress::Reporter;
-use super::{DONE, INTERRUPTED, Refusal, choose, interrupt, memory, setup};
+use super::{DONE, INTERRUPTED, Refusal, choose, interrupt, memory, setup, streams, units};
 use crate::bound::sample_scale;
 use crate::estimate::{Summary, summarize};
 use crate::film::{Film, SampleRanges};
@@ -27,7 +27,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     let picture = Picture::develop(&finished.film, !scene.has_lights());
     let provenance = finished.provenance(args, &scene);
     let files = outputs.write(&picture, &provenance, args.exposure)?;
-    finished.print(args, &files);
+    streams::results(&finished.report(args, &files))?;
     Ok(if finished.outcome.stop == Stop::Interrupted { INTERRUPTED } else { DONE })
 }
 
@@ -60,13 +60,16 @@ fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refu
 
     let planned = plan.samples.end - plan.samples.start;
     let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), planned, plan.time);
+    if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
+        reporter.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
+    }
     reporter.message(&format!(
         "{}x{} pixels on {} ({}), {} of memory",
         scene.size().width(),
         scene.size().height(),
         description.device,
         description.driver,
-        memory::gigabytes(needed),
+        units::bytes(needed),
     ));
     let look = reporter.shows_error();
     let outcome = render(tracer.as_mut(), plan, interrupt, look, &mut |p| reporter.observe(p));
@@ -141,27 +144,24 @@ impl Finished {
         }
     }
 
-    fn print(&self, args: &RenderArgs, files: &[PathBuf]) {
+    fn report(&self, args: &RenderArgs, files: &[PathBuf]) -> String {
         if args.common.json {
-            self.print_json(files);
-            return;
+            return self.json(files);
         }
-        for file in files {
-            println!("wrote {}", file.display());
-        }
-        for sample in &self.ledger.records {
-            println!(
+        let written = files.iter().map(|file| format!("wrote {}", file.display()));
+        let invalid = self.ledger.records.iter().map(|sample| {
+            format!(
                 "invalid: pixel {},{} sample {} ({:?})",
                 sample.pixel % self.film.size().width(),
                 sample.pixel / self.film.size().width(),
                 sample.index,
                 sample.reason
-            );
-        }
-        println!("{}", self.line());
+            )
+        });
+        written.chain(invalid).chain([self.line()]).collect::<Vec<_>>().join("\n")
     }
 
-    fn print_json(&self, outputs: &[PathBuf]) {
+    fn json(&self, outputs: &[PathBuf]) -> String {
         let json = Json {
             device: &self.tracer.device,
             driver: &self.tracer.driver,
@@ -176,7 +176,7 @@ impl Finished {
             invalid_samples: self.ledger.count,
             outputs,
         };
-        println!("{}", serde_json::to_string(&json).expect("plain values serialize"));
+        serde_json::to_string(&json).expect("plain values serialize")
     }
 
     /// The last line: what was reached, and what the next halving of the error would cost.
@@ -202,7 +202,7 @@ impl Finished {
         }
         if self.summary.relative_error.is_some_and(|error| error > 0.0) {
             // The error falls with the square root of the samples: half of it takes four times.
-            facts.push(format!("half the error takes {:.1} s more", 3.0 * self.seconds()));
+            facts.push(format!("half the error takes {} more", units::time(3.0 * self.seconds())));
         }
         format!("{stopped}: {}", facts.join(", "))
     }

@@ -1,8 +1,10 @@
 //! `candor verify`: this machine's device against the f64 twin.
 
-use super::args::VerifyArgs;
+use super::args::{DeviceChoice, VerifyArgs};
 use super::progress::Reporter;
-use super::{DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup};
+use super::{
+    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup, streams,
+};
 use crate::cpu::CpuTracer;
 use crate::film::Film;
 use crate::render::{Plan, Stop, render};
@@ -18,6 +20,14 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     let spp = scene.settings().spp();
     if spp < 2 {
         return refuse("verify needs at least 2 samples per pixel");
+    }
+    if !scene.has_lights() {
+        return refuse("the scene has no lights: it is black everywhere, with nothing to compare");
+    }
+    if common.device == DeviceChoice::Cpu {
+        return refuse(
+            "verify compares a device with the CPU twin; --device cpu is the twin itself",
+        );
     }
     let chosen = choose::choose(&common.device, common.threads)?;
     let Some(device) = chosen.adapter() else {
@@ -37,7 +47,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     ];
     let [Some(ours), Some(twin), Some(other)] = films else { return Ok(INTERRUPTED) };
     let verdict = judge(&ours, &twin, &other);
-    print(&verdict, &device, spp, common.json);
+    streams::results(&report(&verdict, &device, spp, common.json))?;
     Ok(if verdict.agrees() { DONE } else { FAILED })
 }
 
@@ -91,7 +101,7 @@ struct Json<'a> {
     bias_error: [f64; 3],
 }
 
-fn print(verdict: &Verdict, device: &Description, spp: u64, json: bool) {
+fn report(verdict: &Verdict, device: &Description, spp: u64, json: bool) -> String {
     let found = &verdict.independent;
     if json {
         let json = Json {
@@ -110,22 +120,12 @@ fn print(verdict: &Verdict, device: &Description, spp: u64, json: bool) {
             bias: verdict.paired.bias,
             bias_error: verdict.paired.error,
         };
-        println!("{}", serde_json::to_string(&json).expect("plain values serialize"));
-        return;
+        return serde_json::to_string(&json).expect("plain values serialize");
     }
-    println!("device    {} ({})", device.device, device.driver);
-    println!("samples   {spp} per pixel; deviations in standard errors, device - twin");
-    println!("image     z {:+.2}, p {:.2e}", found.image.z, found.image.p);
-    println!("tiles     largest z {:+.2}, p {:.2e}", found.worst.z, found.worst.p);
-    println!(
-        "          mean z {:+.3}, rms z {:.3}, {} tiles",
-        found.mean_z, found.rms_z, found.tiles
-    );
     let [r, g, b] = std::array::from_fn(|c| {
         let (bias, error) = (verdict.paired.bias[c], verdict.paired.error[c]);
         format!("{:+.5} ± {:.5} %", 100.0 * bias, 100.0 * error)
     });
-    println!("bias      r {r}, g {g}, b {b} (same random numbers)");
     let reading = if !found.conclusive {
         "too few hits to tell; use more --spp".to_owned()
     } else if verdict.agrees() {
@@ -136,5 +136,17 @@ fn print(verdict: &Verdict, device: &Description, spp: u64, json: bool) {
             100.0 * MAX_BIAS
         )
     };
-    println!("verdict   {reading}");
+    [
+        format!("device    {} ({})", device.device, device.driver),
+        format!("samples   {spp} per pixel; deviations in standard errors, device - twin"),
+        format!("image     z {:+.2}, p {:.2e}", found.image.z, found.image.p),
+        format!("tiles     largest z {:+.2}, p {:.2e}", found.worst.z, found.worst.p),
+        format!(
+            "          mean z {:+.3}, rms z {:.3}, tiles: {}",
+            found.mean_z, found.rms_z, found.tiles
+        ),
+        format!("bias      r {r}, g {g}, b {b} (same random numbers)"),
+        format!("verdict   {reading}"),
+    ]
+    .join("\n")
 }

@@ -14,6 +14,10 @@ pub fn check_writable(path: &Path) -> Result<(), FileError> {
     if path.is_dir() {
         return Err(FileError::new(path, &"is a folder, not a file"));
     }
+    if !folder_of(path).is_dir() {
+        let folder = folder_of(path).display();
+        return Err(FileError::new(path, &format!("the folder {folder} does not exist")));
+    }
     temporary(path).map(drop)
 }
 
@@ -33,19 +37,22 @@ pub fn replace(
     drop(buffer);
     file.as_file().sync_all().map_err(|error| fail(error.to_string()))?;
     allow_reading(file.as_file());
-    file.persist(path).map_err(|error| fail(error.to_string()))?;
+    file.persist(path).map_err(|error| fail(error.error.to_string()))?;
     Ok(())
 }
 
 fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, FileError> {
-    let folder = match path.parent() {
+    tempfile::Builder::new().prefix(".candor-").tempfile_in(folder_of(path)).map_err(|error| {
+        // The whole error names the temporary file, which says nothing to the user.
+        FileError::new(path, &format!("cannot be written: {}", error.kind()))
+    })
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
-    };
-    tempfile::Builder::new()
-        .prefix(".candor-")
-        .tempfile_in(folder)
-        .map_err(|error| FileError::new(path, &format!("cannot be written: {error}")))
+    }
 }
 
 /// A temporary file is private; a picture is not. Where this is refused (some network

@@ -79,13 +79,13 @@ fn a_film_with_more_samples_is_replaced_only_by_force() {
 #[test]
 fn a_short_render_goes_beside_a_better_film() {
     let folder = Folder::new();
-    folder.candor("render scene.toml --device cpu --quiet -o a.exr --spp 50").silently_done();
-    let better = folder.read("a.exr");
-    let arguments = "render scene.toml --device cpu --quiet -o a.exr --size 512x512 --time 1ms";
-    let results = folder.candor(arguments).silently_done();
-    assert!(results.starts_with("wrote a.1.exr\ntime is up: "), "{results}");
-    assert_eq!(folder.read("a.exr"), better);
-    assert_eq!(folder.files(), ["a.1.exr", "a.exr"]);
+    let render = "render scene.toml --device cpu --quiet -o a.exr -o a.png";
+    folder.candor(&format!("{render} --spp 50")).silently_done();
+    let better = [folder.read("a.exr"), folder.read("a.png")];
+    let results = folder.candor(&format!("{render} --size 512x512 --time 1ms")).silently_done();
+    assert!(results.starts_with("wrote a.1.exr\nwrote a.1.png\ntime is up: "), "{results}");
+    assert_eq!([folder.read("a.exr"), folder.read("a.png")], better);
+    assert_eq!(folder.files(), ["a.1.exr", "a.1.png", "a.exr", "a.png"]);
 }
 
 /// What is there and is no film of candor is a file like any other.
