@@ -8,6 +8,7 @@
 #![allow(clippy::cast_precision_loss, reason = "rates and ratios for show")]
 
 use candor::bound::sample_scale;
+use candor::cpu::CpuTracer;
 use candor::effects::Effects;
 use candor::gpu::{Adapter, Gpu, GpuTracer, adapters};
 use candor::kernel::{self, Kernel, Nearest};
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Millions of samples of one measurement at 512×512.
+/// Samples per pixel of one measurement at 512×512.
 const SPP: u64 = 32;
 
 fn main() {
@@ -57,16 +58,16 @@ fn main() {
 /// One line of the table.
 struct Row {
     name: &'static str,
-    tracer: Option<GpuTracer>,
+    tracer: Option<Box<dyn Tracer>>,
     pixels: u32,
     spp: u64,
     rates: Vec<f64>,
 }
 
 impl Row {
-    fn new(name: &'static str, tracer: GpuTracer, scene: &Scene, spp: u64) -> Self {
+    fn new(name: &'static str, tracer: impl Tracer + 'static, scene: &Scene, spp: u64) -> Self {
         let pixels = scene.size().pixels();
-        let mut row = Self { name, tracer: Some(tracer), pixels, spp, rates: Vec::new() };
+        let mut row = Self { name, tracer: Some(Box::new(tracer)), pixels, spp, rates: Vec::new() };
         // The first dispatches compile the kernel and find the device's pace.
         row.trace(1 << 40);
         row
@@ -107,6 +108,7 @@ fn rows(scene: &Scene, adapter: &Adapter) -> Vec<Row> {
         Row::new("512x512, plain f32 sum", with(&plain_sum(&kernel.wgsl())), scene, SPP),
         Row::new("512x512, loop over the spheres", with(&looped.wgsl()), scene, SPP),
         Row::new("16x16", GpuTracer::new(&small, gpu()).expect("fits"), &small, SPP * 1024),
+        Row::new("512x512, CPU twin (f64)", CpuTracer::new(scene, None).expect("fits"), scene, 8),
         Row { name: "limit.cpp", tracer: None, pixels: 0, spp: 0, rates: Vec::new() },
     ]
 }
