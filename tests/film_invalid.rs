@@ -1,0 +1,153 @@
+//! Samples that are invalid: counted, recorded with their address, and not in the film.
+
+#![expect(clippy::single_range_in_vec_init, reason = "one way of dividing the samples")]
+
+mod support {
+    pub mod gpu;
+    pub mod scenes;
+    pub mod tracers;
+}
+
+use candor::bound::sample_scale;
+use candor::film::Film;
+use candor::scene::Scene;
+use candor::tracer::{InvalidReason, InvalidSample, Ledger};
+use support::scenes::{classic, many, size};
+use support::tracers::{film, kernel, mutant, on_device, trace, with_kernel};
+
+const FIRST: u64 = (1 << 32) - 3;
+const WIDTH: u32 = 13;
+
+/// Where the kernel has a sample in hand.
+const SAMPLE: &str = "let sample = trace(pixel, key);";
+
+fn scene() -> Scene {
+    classic(size(WIDTH, 9))
+}
+
+/// Puts `value` into one channel of every fourth sample of three pixels.
+fn poisoned(value: &str) -> String {
+    format!(
+        "var sample = trace(pixel, key);
+    if (pixel.x % 5u == 2u && pixel.y == 4u && (key.index_low & 3u) == 1u) {{ {value} }}"
+    )
+}
+
+/// The samples that `poisoned` meets of `count` from `FIRST` on.
+fn addresses(count: u64) -> Vec<(u32, u64)> {
+    let samples = (FIRST..FIRST + count).filter(|index| index % 4 == 1);
+    let pixels = [2, 7, 12].map(|x| 4 * WIDTH + x);
+    let mut all: Vec<_> = samples.flat_map(|index| pixels.map(|pixel| (pixel, index))).collect();
+    all.sort_unstable();
+    all
+}
+
+fn traced(to: &str, count: u64) -> (Film, Ledger) {
+    trace(&mut mutant(&scene(), SAMPLE, to), &[FIRST..FIRST + count])
+}
+
+#[test]
+fn invalid_samples_are_recorded_and_add_nothing() {
+    let bound = sample_scale(&scene()).bound();
+    // Written so that no compiler can see the value at compile time.
+    let bits = |bits: u32| {
+        poisoned(&format!("sample.radiance.y = bitcast<f32>({bits}u + (key.pixel & 0x80000000u));"))
+    };
+    let (without, ledger) = traced(&poisoned("sample.radiance = vec3<f32>(0.0);"), 12);
+    assert_eq!(ledger.count, 0);
+    let values = [
+        ("NaN", f32::NAN),
+        ("a signalling NaN", f32::from_bits(0x7f80_0001)),
+        ("infinity", f32::INFINITY),
+        ("minus infinity", f32::NEG_INFINITY),
+        ("a negative number", -1e-30),
+        ("more than the bound", bound.next_up()),
+    ];
+    let expected = addresses(12);
+    for (name, value) in values {
+        let (film, ledger) = traced(&bits(value.to_bits()), 12);
+        assert_eq!(ledger.count, expected.len() as u64, "{name}");
+        let mut found: Vec<_> = ledger.records.iter().map(|r| (r.pixel, r.index)).collect();
+        found.sort_unstable();
+        assert_eq!(found, expected, "{name}");
+        assert!(ledger.records.iter().all(|r| r.reason == InvalidReason::OutOfBounds), "{name}");
+        assert!(film == without, "{name} left something in the film");
+        assert_eq!(film.samples().count(), 12, "{name}");
+    }
+    // What is at the bound is valid, and seen in the film.
+    let (film, ledger) = traced(&bits(bound.to_bits()), 12);
+    assert_eq!(ledger.count, 0);
+    assert!(film != without);
+}
+
+/// More than the ledger has room for are still counted.
+#[test]
+fn the_ledger_counts_beyond_its_records() {
+    let (_, ledger) = traced(&poisoned("sample.radiance.x = -1.0;"), 400);
+    let expected = addresses(400);
+    assert_eq!((ledger.count, ledger.records.len()), (expected.len() as u64, 16));
+    for record in ledger.records {
+        assert!(expected.contains(&(record.pixel, record.index)), "{record:?}");
+    }
+}
+
+/// A kernel that does not look for invalid samples is told by the ledger alone.
+#[test]
+fn an_unchecked_kernel_is_rejected() {
+    let unchecked = kernel(&scene())
+        .replace("if exceeds_bound(sample.radiance)", "if false")
+        .replace(SAMPLE, &poisoned("sample.radiance.x = -1.0;"));
+    let (without, _) = traced(&poisoned("sample.radiance = vec3<f32>(0.0);"), 12);
+    let (film, ledger) = trace(&mut with_kernel(&scene(), &unchecked), &[FIRST..FIRST + 12]);
+    assert!(ledger.count != addresses(12).len() as u64 && film != without);
+}
+
+/// A loop over bounces that is left early: exactly the paths that were still under way
+/// are unfinished.
+#[test]
+fn a_path_cut_short_is_unfinished() {
+    let scene = scene();
+    let whole = "bounce <= BOUNCES; bounce++";
+    let (cut, ledger) = trace(&mut mutant(&scene, whole, "bounce < BOUNCES; bounce++"), &[0..64]);
+    assert!(ledger.count > 0 && ledger.records.len() == 16);
+    assert!(ledger.records.iter().all(|r| r.reason == InvalidReason::Unfinished));
+    // One bounce less, properly ended, leaves the same light.
+    let settings = scene.settings().with_bounces(1).expect("a bounce");
+    let shorter = scene.clone().with_settings(settings);
+    let packed = support::scenes::packed(&scene).scene;
+    let mut tracer = candor::gpu::GpuTracer::with_kernel(
+        &scene,
+        support::gpu::open(),
+        &packed,
+        &kernel(&shorter),
+    )
+    .expect("the device takes the kernel");
+    assert!(film(&mut tracer, &[0..64]) == cut);
+}
+
+/// A loop over spheres that is left early: every sample is unfinished.
+#[test]
+fn a_search_cut_short_is_unfinished() {
+    let scene = many(size(5, 3));
+    assert!(film(&mut on_device(&scene), &[0..8]).pixels().iter().flatten().any(|&w| w > 0));
+    let mut cut = mutant(&scene, "; i < scene.sphere_count; i++", "; i < 3u; i++");
+    let (film, ledger) = trace(&mut cut, &[0..8]);
+    assert_eq!(ledger.count, 5 * 3 * 8);
+    let unfinished = |r: &InvalidSample| r.reason == InvalidReason::Unfinished && r.pixel < 15;
+    assert!(ledger.records.iter().all(unfinished));
+    assert!(film.pixels().iter().flatten().all(|&word| word == 0));
+}
+
+/// The longest loops that a scene can ask for are finished.
+#[test]
+fn the_longest_path_among_the_most_spheres_is_finished() {
+    let mut spheres = support::scenes::room(1e4, true).spheres().to_vec();
+    let speck = |i: u32| {
+        let [x, y, z] = [i % 8, i / 8 % 8, i / 64].map(|n| 0.6 * f64::from(n) - 2.1);
+        support::scenes::sphere([x, y, z], 0.01, support::scenes::diffuse(1.0))
+    };
+    let free = candor::kernel::SPHERE_CAPACITY - spheres.len();
+    spheres.extend((0..).map(speck).take(free));
+    let scene = support::scenes::seen([1.0, 0.5, 0.25], [2.0, 1.0, 0.0], size(16, 16), 64, spheres);
+    film(&mut on_device(&scene), &[0..4]);
+}
