@@ -32,7 +32,7 @@ fn probe_math(@builtin(global_invocation_id) id: vec3<u32>) {
         sincos_2pi(row.x), minus_log_complement(row.x), one_minus_exp_minus(row.y)));
 }
 
-// Rows in threes: origin and form (0 factored, 1 anchored); direction and side (0
+// Rows in fours: origin and form (0 factored, 1 anchored); direction and side (0
 // entry, 1 exit, 2 exit leaving); position and size, with the offset in the fourth
 // row. Result: distance, b, c, discriminant.
 @compute @workgroup_size(64)
@@ -55,8 +55,7 @@ fn probe_hit(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 
 // Rows in pairs: origin, then direction with the packed sphere that the ray leaves.
-// Results in pairs: distance and sphere, then -; the surface point and the normal
-// follow in the next two.
+// Results in threes: distance and sphere; the surface point; the normal.
 @compute @workgroup_size(64)
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
     if 3u * id.x >= arrayLength(&outputs) { return; }
@@ -93,7 +92,7 @@ fn probe_scatter(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(s.direction, s.weight));
 }
 
-// Rows in threes: camera ray of pixel (x, y) and u; -. Result: direction.
+// Row: pixel (x, y), then where on it. Result: direction of the camera ray.
 @compute @workgroup_size(64)
 fn probe_camera(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= arrayLength(&outputs) { return; }
@@ -132,10 +131,10 @@ fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= SPHERE_CAPACITY { return; }
     if id.x == 0u {
         outputs[0] = vec4<u32>(bitcast<vec3<u32>>(scene.origin), scene.seed);
-        outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.start);
+        outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.factored_count);
         outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
         outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
-        outputs[4] = vec4<u32>(scene.factored_count, scene.sphere_count, 0u, 0u);
+        outputs[4] = vec4<u32>(scene.sphere_count, 0u, 0u, 0u);
     }
     let s = scene.spheres[id.x];
     let at = 5u + 3u * id.x;

@@ -35,16 +35,14 @@ struct Scene {
     origin: vec3<f32>,
     seed: u32,
     forward: vec3<f32>,
-    // Sphere that the camera stands on, or NO_SPHERE.
-    start: u32,
+    // Spheres 0..factored_count are in factored form, the rest in anchored form.
+    factored_count: u32,
     right: vec3<f32>,
     // A sample x enters the film as the integer trunc(x·2^film_shift).
     film_shift: i32,
     up: vec3<f32>,
     // Bit pattern of the proven bound on one sample.
     bound_bits: u32,
-    // Spheres 0..factored_count are in factored form, the rest in anchored form.
-    factored_count: u32,
     sphere_count: u32,
     spheres: array<Sphere, SPHERE_CAPACITY>,
 }

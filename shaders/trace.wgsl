@@ -35,7 +35,7 @@ fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
     load_shapes();
     var ray = camera_ray(pixel, unit_floats(random_bits(key, 0u)));
     var throughput = vec3<f32>(1.0);
-    var leaving = scene.start;
+    var leaving = NO_SPHERE;
     for (var bounce = 0u; bounce <= BOUNCES; bounce++) {
         let hit = nearest(ray, leaving);
         if hit.sphere >= UNFINISHED {

@@ -19,12 +19,17 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether device and twin show the same picture as far as these samples tell.
+    /// Whether device and twin show the same picture, as far as these samples tell.
     #[must_use]
     pub fn agrees(&self) -> bool {
-        self.independent.conclusive
-            && !self.independent.disagrees(ALPHA)
-            && !self.paired.exceeds(MAX_BIAS, ALPHA)
+        self.independent.conclusive && !self.disagrees() && self.paired.is_within(MAX_BIAS, ALPHA)
+    }
+
+    /// Whether they certainly do not. Where neither holds, there are too few samples to
+    /// tell, or too many paths that differ.
+    #[must_use]
+    pub fn disagrees(&self) -> bool {
+        self.independent.disagrees(ALPHA) || self.paired.exceeds(MAX_BIAS, ALPHA)
     }
 }
 

@@ -23,7 +23,6 @@ pub struct Viewpoint {
     focus: DVec3,
     extent: f64,
     inside: Vec<bool>,
-    start: Option<usize>,
 }
 
 impl Viewpoint {
@@ -38,7 +37,6 @@ impl Viewpoint {
             focus: low.midpoint(high),
             extent,
             inside: scene.spheres().iter().map(|s| sees_inside(camera, s, near)).collect(),
-            start: scene.spheres().iter().position(|s| height(camera, s).abs() <= near),
         }
     }
 
@@ -60,13 +58,6 @@ impl Viewpoint {
     pub fn inside(&self) -> &[bool] {
         &self.inside
     }
-
-    /// The sphere on whose surface the camera stands, the first of them; camera rays
-    /// leave it as if it had scattered them.
-    #[must_use]
-    pub fn start(&self) -> Option<usize> {
-        self.start
-    }
 }
 
 /// Signed distance of the camera from the surface, negative inside.
@@ -86,28 +77,36 @@ fn sees_inside(camera: &Camera, sphere: &Sphere, near: f64) -> bool {
 
 /// The box of what light can reach. Spheres enter in the order of their radii; one
 /// that is larger than the distances met so far is a wall, of which only the surface
-/// nearest to the rest counts, so that the far side of a huge sphere does not.
+/// nearest to the rest counts, so that the far side of a huge sphere does not. The
+/// smallest has no rest to be large beside, only the camera.
 fn bounds(scene: &Scene) -> (DVec3, DVec3) {
+    let camera = scene.camera().position();
     let mut spheres: Vec<&Sphere> = scene.spheres().iter().collect();
     spheres.sort_by(|a, b| a.radius().total_cmp(&b.radius()));
-    let camera = scene.camera().position();
-    let Some((first, rest)) = spheres.split_first() else {
+    let Some((smallest, rest)) = spheres.split_first() else {
         return (camera, camera);
     };
-    let whole = |s: &Sphere| (s.center() - s.radius(), s.center() + s.radius());
-    let (mut low, mut high) = whole(first);
+    let (mut low, mut high) = counted(smallest, camera, 0.0);
     for sphere in rest {
-        let middle = low.midpoint(high);
-        let outward = (middle - sphere.center()).try_normalize().unwrap_or(DVec3::X);
-        let surface = sphere.center() + sphere.radius() * outward;
-        let reach = (high - low).length() / 2.0 + surface.distance(middle);
-        let (l, h) =
-            if sphere.radius() <= 2.0 * reach { whole(sphere) } else { (surface, surface) };
+        let (l, h) = counted(sphere, low.midpoint(high), (high - low).length() / 2.0);
         (low, high) = (low.min(l), high.max(h));
     }
     let extent = (high - low).length() / 2.0;
-    if camera.distance(low.midpoint(high)) <= FAR_CAMERA * extent {
+    if extent == 0.0 || camera.distance(low.midpoint(high)) <= FAR_CAMERA * extent {
         (low, high) = (low.min(camera), high.max(camera));
     }
-    (low, high)
+    // A camera on the only sphere, or on the very points that count, has no distance yet.
+    if low == high { whole(smallest) } else { (low, high) }
+}
+
+/// What counts of a sphere beside a box of half diagonal `extent` around `middle`.
+fn counted(sphere: &Sphere, middle: DVec3, extent: f64) -> (DVec3, DVec3) {
+    let outward = (middle - sphere.center()).try_normalize().unwrap_or(DVec3::X);
+    let surface = sphere.center() + sphere.radius() * outward;
+    let reach = extent + surface.distance(middle);
+    if sphere.radius() <= 2.0 * reach { whole(sphere) } else { (surface, surface) }
+}
+
+fn whole(sphere: &Sphere) -> (DVec3, DVec3) {
+    (sphere.center() - sphere.radius(), sphere.center() + sphere.radius())
 }

@@ -163,7 +163,12 @@ fn pairing_finds_the_bias_of_a_channel() {
     let biased = pair(&make(8.0 * 1.003), &make(8.0));
     assert!((biased.bias[2] - 0.003).abs() < 1e-6, "{biased:?}");
     assert!(biased.bias[..2] == [0.0; 2] && biased.exceeds(1e-3, 1e-6), "{biased:?}");
-    assert!(!biased.exceeds(4e-3, 1e-6), "{biased:?}");
+    assert!(!biased.exceeds(4e-3, 1e-6) && biased.is_within(4e-3, 1e-6), "{biased:?}");
+    assert!(same.is_within(1e-3, 1e-6) && !biased.is_within(1e-3, 1e-6));
+    // Other paths with the same mean are no proof of a small bias.
+    let other = hits(8, 32, 64, |_| 0.1);
+    let apart = pair(&hits(9, 32, 64, |_| 0.1), &other);
+    assert!(!apart.is_within(1e-3, 1e-6), "{apart:?}");
 }
 
 /// Values of the standard normal's tail from Abramowitz & Stegun, table 26.2.

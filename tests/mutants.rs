@@ -11,7 +11,7 @@ mod support {
     pub mod tracers;
 }
 
-use candor::estimate::{Paired, pair, z_limit};
+use candor::estimate::pair;
 use candor::film::Film;
 use candor::scene::Scene;
 use candor::verify::{ALPHA, MAX_BIAS};
@@ -86,14 +86,6 @@ fn gloss() -> Scene {
     seen([0.0, 2.0, 9.0], [0.0, 0.5, 0.0], size(32, 32), 3, spheres)
 }
 
-/// Whether the same random numbers gave the same picture: the bias is certainly below
-/// its limit. Where paths go other ways the differences scatter so much that nothing is
-/// certain, even if the means agree.
-fn is_the_same_picture(paired: &Paired) -> bool {
-    let z = z_limit(ALPHA);
-    std::iter::zip(paired.bias, paired.error).all(|(bias, error)| bias.abs() + z * error < MAX_BIAS)
-}
-
 impl Judge {
     fn scene(self) -> Scene {
         match self {
@@ -114,7 +106,8 @@ impl Judge {
         match self {
             Self::Classic | Self::Hollow | Self::Gloss | Self::Furnace => {
                 let (found, ledger) = trace(&mut tracer, &[0..256]);
-                ledger.count == 0 && is_the_same_picture(&pair(&found, self.twin()))
+                let paired = pair(&found, self.twin());
+                ledger.count == 0 && paired.is_within(MAX_BIAS, ALPHA)
             }
             Self::Shell => is_exactly(&film(&mut tracer, &[0..300]), SHELL, 300),
             Self::Coincident => {

@@ -32,7 +32,8 @@ fn hollow() -> Scene {
     seen([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], size(SIDE, SIDE), 3, spheres)
 }
 
-/// On the floor, looking up at lamps, one behind another, and at a glossy wall.
+/// On the floor, looking at lamps, one behind another, and at a glossy wall; the lowest
+/// pixels look into the floor.
 fn standing() -> Scene {
     let spheres = vec![
         sphere([0.0, -1e6, 0.0], 1e6, diffuse(0.8)),
@@ -41,7 +42,7 @@ fn standing() -> Scene {
         sphere([-1e4 - 3.0, 0.0, 0.0], 1e4, glossy(0.9, 5.0)),
         sphere([2.0, 1.0, -5.0], 1.0, diffuse(0.5)),
     ];
-    seen([0.0, 0.0, 1.0], [0.0, 4.0, -3.0], size(SIDE, SIDE), 2, spheres)
+    seen([0.0, 0.0, 1.0], [0.0, 1.5, -4.0], size(SIDE, SIDE), 2, spheres)
 }
 
 /// Glossy surfaces alone, from a nearly uniform lobe to a near mirror.

@@ -45,6 +45,31 @@ fn the_classic_scene_has_the_box_as_its_extent_whatever_its_walls() {
     assert_eq!(load("scenes/two-spheres.toml".as_ref()).expect("a scene"), classic(1e5));
 }
 
+/// Walls need no small sphere beside them to be walls: six of them around the camera, a
+/// floor alone, and a floor that the camera stands on under one that it does not.
+#[test]
+fn walls_alone_do_not_count_with_their_far_sides() {
+    let room: Vec<Sphere> = DVec3::AXES
+        .into_iter()
+        .flat_map(|axis| [axis, -axis])
+        .map(|axis| sphere((axis * 100_003.0).to_array(), 1e5, white()))
+        .collect();
+    let extent = |at, spheres| Viewpoint::of(&scene(at, [0.0; 3], spheres)).extent();
+    assert!(extent([1.0, 0.5, 0.25], room) < 10.0);
+    let floor = || sphere([0.0, -1e5, 0.0], 1e5, white());
+    assert!(extent([0.0, 3.0, 1.0], vec![floor()]) < 10.0);
+    let ceiling = sphere([0.0, 1e6 + 4.0, 0.0], 1e6, white());
+    assert!(extent([0.0, 0.0, 1.0], vec![floor(), ceiling]) < 10.0);
+}
+
+/// On the only sphere there is, that sphere is all there is.
+#[test]
+fn a_camera_on_the_only_sphere_has_it_as_its_extent() {
+    let ball = vec![sphere([0.0; 3], 2.0, white())];
+    let viewpoint = Viewpoint::of(&scene([0.0, 0.0, 2.0], [0.0, 0.0, 9.0], ball));
+    assert!((viewpoint.extent() - 2.0 * 3.0_f64.sqrt()).abs() < 1e-9, "{viewpoint:?}");
+}
+
 #[test]
 fn walls_are_anchored_and_balls_are_factored() {
     let scene = classic(1e5);
@@ -103,19 +128,19 @@ fn sides_follow_the_camera() {
     assert!(Effects::of(&at(5.0), &Viewpoint::of(&at(5.0))).interior);
 }
 
-/// Standing on a surface, the camera is on the side that it looks to, and starts there.
+/// Standing on a surface, the camera is on the side that it looks to.
 #[test]
 fn a_camera_on_a_surface_is_on_the_side_that_it_looks_to() {
     let ball = || vec![sphere([5.0, 0.0, 0.0], 0.1, white()), sphere([0.0; 3], 1.0, white())];
     for off in [0.0, 1e-7, -1e-7] {
         let position = [0.0, 0.0, 1.0 + off];
         let outward = Viewpoint::of(&scene(position, [0.0, 0.0, 9.0], ball()));
-        assert_eq!((outward.inside()[1], outward.start()), (false, Some(1)), "{off}");
+        assert_eq!(outward.inside(), [false, false], "{off}");
         let inward = Viewpoint::of(&scene(position, [0.0, 0.0, -9.0], ball()));
-        assert_eq!((inward.inside()[1], inward.start()), (true, Some(1)), "{off}");
+        assert_eq!(inward.inside(), [false, true], "{off}");
     }
     let above = Viewpoint::of(&scene([0.0, 0.0, 1.001], [0.0, 0.0, -9.0], ball()));
-    assert_eq!((above.inside()[1], above.start()), (false, None));
+    assert_eq!(above.inside(), [false, false]);
 }
 
 #[test]

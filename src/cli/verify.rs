@@ -126,15 +126,17 @@ fn report(verdict: &Verdict, device: &Description, spp: u64, json: bool) -> Stri
         let (bias, error) = (verdict.paired.bias[c], verdict.paired.error[c]);
         format!("{:+.5} ± {:.5} %", 100.0 * bias, 100.0 * error)
     });
-    let reading = if !found.conclusive {
-        "too few hits to tell; use more --spp".to_owned()
-    } else if verdict.agrees() {
+    let reading = if verdict.agrees() {
         "the device agrees with the twin".to_owned()
-    } else {
+    } else if verdict.disagrees() {
         format!(
             "THE DEVICE DISAGREES (family-wise {ALPHA:e}, bias limit {:.1} %)",
             100.0 * MAX_BIAS
         )
+    } else if found.conclusive {
+        format!("not sure to {:.1} % of bias; use more --spp", 100.0 * MAX_BIAS)
+    } else {
+        "too few hits to tell; use more --spp".to_owned()
     };
     [
         format!("device    {} ({})", device.device, device.driver),

@@ -12,8 +12,6 @@ pub struct PreparedScene {
     pub(super) camera: Pinhole,
     pub(super) bounces: u32,
     pub(super) seed: u32,
-    /// Sphere that the camera stands on.
-    pub(super) start: Option<usize>,
     /// In the order of the scene file.
     pub(super) spheres: Vec<PreparedSphere>,
 }
@@ -50,7 +48,6 @@ impl PreparedScene {
             camera: Pinhole::of(scene),
             bounces: scene.settings().bounces(),
             seed: scene.settings().seed(),
-            start: viewpoint.start(),
             spheres: sides
                 .map(|(sphere, &inside)| PreparedSphere {
                     center: sphere.center(),

@@ -43,7 +43,7 @@ pub fn trace(scene: &PreparedScene, key: SampleKey) -> DVec3 {
     let random = |block| unit_floats(random_bits(key, block, scene.seed));
     let mut ray = camera_ray(&scene.camera, key.pixel, random(0));
     let mut throughput = DVec3::ONE;
-    let mut leaving = scene.start;
+    let mut leaving = None;
     for bounce in 0..=scene.bounces {
         let Some(hit) = nearest(scene, &ray, leaving) else { break };
         let sphere = &scene.spheres[hit.sphere];

@@ -184,6 +184,14 @@ impl Paired {
         let z = z_limit(alpha);
         std::iter::zip(self.bias, self.error).any(|(bias, error)| bias.abs() - z * error > limit)
     }
+
+    /// Whether every channel's bias is certainly within `limit`. Paths that differ on the
+    /// two sides widen the error, so that this fails where [`Self::exceeds`] cannot tell.
+    #[must_use]
+    pub fn is_within(&self, limit: f64, alpha: f64) -> bool {
+        let z = z_limit(alpha);
+        std::iter::zip(self.bias, self.error).all(|(bias, error)| bias.abs() + z * error <= limit)
+    }
 }
 
 /// Pairs two films of the same samples, `b` being the reference. A channel that is 0

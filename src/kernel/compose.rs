@@ -121,16 +121,6 @@ impl Kernel {
         ]
         .join("\n")
     }
-
-    /// Loop iterations that one sample may take, over all loops together.
-    #[must_use]
-    pub fn loop_iterations(&self, spheres: usize) -> u64 {
-        let segments = u64::from(self.bounces) + 1;
-        match self.nearest {
-            Nearest::Loop => segments * (spheres as u64 + 1),
-            Nearest::Unrolled(_) => segments,
-        }
-    }
 }
 
 /// Straight-line search. The shapes are loaded once a path: where a driver fetches

@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// Spheres that the uniform buffer holds.
 pub const SPHERE_CAPACITY: usize = 512;
-/// In place of a sphere: none.
+/// In place of a sphere, in the kernel and in the probe's tables: none.
 pub const NO_SPHERE: u32 = u32::MAX;
 /// Invalid samples that the ledger records.
 pub const LEDGER_RECORDS: usize = 16;
@@ -55,8 +55,8 @@ pub struct Scene {
     pub seed: u32,
     /// Unit view direction.
     pub forward: [f32; 3],
-    /// Sphere that the camera stands on, or [`NO_SPHERE`].
-    pub start: u32,
+    /// Spheres in factored form; they come first.
+    pub factored_count: u32,
     /// Half the picture's width on the plane at distance 1.
     pub right: [f32; 3],
     /// Film scale: a sample x becomes trunc(x·2^`film_shift`).
@@ -65,12 +65,10 @@ pub struct Scene {
     pub up: [f32; 3],
     /// Bit pattern of the bound on one sample.
     pub bound_bits: u32,
-    /// Spheres in factored form; they come first.
-    pub factored_count: u32,
     /// All spheres.
     pub sphere_count: u32,
     /// Implicit in WGSL.
-    pub padding: [u32; 2],
+    pub padding: [u32; 3],
     /// Factored ones first, each group in the order of the scene file.
     pub spheres: [Sphere; SPHERE_CAPACITY],
 }

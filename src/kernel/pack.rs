@@ -1,6 +1,6 @@
 //! A validated scene in kernel units, ready for the device.
 
-use super::layout::{self, NO_SPHERE, SPHERE_CAPACITY};
+use super::layout::{self, SPHERE_CAPACITY};
 use crate::film::SampleScale;
 use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::Viewpoint;
@@ -85,13 +85,9 @@ pub fn pack(
 
     let mut packed: Box<layout::Scene> = bytemuck::zeroed_box();
     pack_camera(&mut packed, scene, &units);
-    packed.start = NO_SPHERE;
     for (place, index) in of_form(Form::Factored).chain(of_form(Form::Anchored)).enumerate() {
         let inside = viewpoint.inside()[index];
         packed.spheres[place] = pack_sphere(&spheres[index], index, forms[index], inside, &units);
-        if viewpoint.start() == Some(index) {
-            packed.start = word(place);
-        }
     }
     packed.factored_count = word(of_form(Form::Factored).count());
     packed.sphere_count = word(spheres.len());
