@@ -5,7 +5,7 @@ use crate::effects::Effects;
 use crate::scene::ImageSize;
 
 /// Scenes of up to this many spheres get straight-line code instead of a loop over
-/// the spheres (BENCHMARKS.md, "Nearest hit").
+/// the spheres, which is faster (BENCHMARKS.md, "Speed of the classic scene").
 pub const UNROLLED_SPHERES: usize = 16;
 
 macro_rules! fragment {
@@ -123,8 +123,8 @@ impl Kernel {
     }
 }
 
-/// Straight-line search. The shapes are loaded once a path: where a driver fetches
-/// uniforms lane by lane, that is a fifth of the time (BENCHMARKS.md, "Nearest hit").
+/// Straight-line search. The shapes are loaded once a path and not once a segment, which
+/// matters where a driver fetches uniforms lane by lane.
 /// Factored spheres come first in the uniform buffer, each group in the order of the
 /// file, and so each sphere's place follows from the forms.
 fn unrolled(forms: &[Form]) -> String {
