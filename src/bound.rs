@@ -1,11 +1,14 @@
 //! A proven bound on one sample, from which the film takes its scale.
 
 use crate::film::SampleScale;
-use crate::scene::{Estimator, Scene, Surface};
+use crate::scene::{Estimator, Invalid, Scene, Surface};
 
-/// Room for the rounding of the kernel's `f32` products: at most eight roundings per
-/// scattering, two scatterings in 2⁻²⁰.
+/// Room for the rounding of the kernel's `f32` products: 16 roundings per scattering
+/// (the norms of mirror and frame, the cosine, albedo and throughput).
 const ROUNDING: f64 = 1.0 + 1.0 / (1 << 20) as f64;
+
+/// The film's step must not exceed this fraction of the brightest light.
+const COARSEST: f64 = 1e-6;
 
 /// The finest film scale that holds every sample of the scene.
 ///
@@ -14,23 +17,53 @@ const ROUNDING: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 /// uniformly sampled diffuse surface (2ρcosθ), ρ for a Phong lobe (ρcosθ).
 #[must_use]
 pub fn sample_scale(scene: &Scene) -> SampleScale {
-    let settings = scene.settings();
-    let mut brightest = 0.0_f64;
-    let mut weight = 1.0_f64;
-    for sphere in scene.spheres() {
-        match sphere.surface() {
-            Surface::Emitter(radiance) => {
-                brightest = brightest.max(radiance.rgb().max_element());
-            }
-            Surface::Diffuse(albedo) => match settings.estimator() {
-                Estimator::Implicit => weight = weight.max(2.0 * albedo.rgb().max_element()),
-            },
-            Surface::Glossy(..) => {}
-        }
+    scale_at(scene, scene.settings().bounces())
+}
+
+/// Checks that the film resolves the scene's picture: the bound grows with every bounce,
+/// and the film holds 64 bits of it.
+///
+/// # Errors
+/// If a film step would exceed 1e-6 of the brightest light; how many bounces would do.
+pub fn check(scene: &Scene) -> Result<(), Invalid> {
+    let light = brightest(scene);
+    let resolves = |&bounces: &u32| scale_at(scene, bounces).step() <= COARSEST * light;
+    let bounces = scene.settings().bounces();
+    if light == 0.0 || resolves(&bounces) {
+        return Ok(());
     }
-    let bounces = settings.bounces().cast_signed();
+    let most = (0..bounces).rev().find(resolves).unwrap_or(0);
+    Err(Invalid(format!(
+        "{bounces} bounces among surfaces this bright could make one sample so large that the \
+         film had no digits left for the others; with the {} estimator this scene takes at most \
+         {most}",
+        scene.settings().estimator().name()
+    )))
+}
+
+fn scale_at(scene: &Scene, bounces: u32) -> SampleScale {
+    let brightest = brightest(scene);
     if brightest == 0.0 {
         return SampleScale::from_bound(1.0);
     }
-    SampleScale::from_bound(brightest * (weight * ROUNDING).powi(bounces) * ROUNDING)
+    let weights = (largest_weight(scene) * ROUNDING).powi(bounces.cast_signed());
+    SampleScale::from_bound(brightest * weights * ROUNDING)
+}
+
+fn brightest(scene: &Scene) -> f64 {
+    let radiance = scene.spheres().iter().filter_map(|sphere| match sphere.surface() {
+        Surface::Emitter(radiance) => Some(radiance.rgb().max_element()),
+        _ => None,
+    });
+    radiance.fold(0.0, f64::max)
+}
+
+fn largest_weight(scene: &Scene) -> f64 {
+    let weights = scene.spheres().iter().filter_map(|sphere| match sphere.surface() {
+        Surface::Diffuse(albedo) => match scene.settings().estimator() {
+            Estimator::Implicit => Some(2.0 * albedo.rgb().max_element()),
+        },
+        _ => None,
+    });
+    weights.fold(1.0, f64::max)
 }

@@ -9,13 +9,15 @@
 use crate::scene::{Camera, Scene, Sphere};
 use glam::DVec3;
 
-/// A camera within this fraction of the extent of a surface stands on it: 16 units of
-/// `f32` rounding, the error of a hit point in either form (DESIGN.md, "Hits").
-const ON_SURFACE: f64 = 1.0 / (1 << 20) as f64;
+/// A camera nearer to a surface than this many units of `f64` rounding stands on it: its
+/// side cannot be told from its place. (An `f32` origin that rounds to the wrong side needs
+/// no tolerance, see `shaders/sphere.wgsl`.)
+const ON_SURFACE: f64 = 16.0 * f64::EPSILON;
 
-/// A camera farther away than this many extents does not move the focus: the digits
-/// are spent where the surfaces are.
-const FAR_CAMERA: f64 = 64.0;
+/// What is farther from the camera than this many times the median sphere is scenery, a
+/// sky or a sun; what is farther from the scenery is a far camera. Neither moves the focus:
+/// the digits are spent where the scene is, and far things keep their relative precision.
+const FAR: f64 = 64.0;
 
 /// Focus, extent and sides of a scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,11 +34,10 @@ impl Viewpoint {
         let (low, high) = bounds(scene);
         let extent = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
         let camera = scene.camera();
-        let near = extent * ON_SURFACE;
         Self {
             focus: low.midpoint(high),
             extent,
-            inside: scene.spheres().iter().map(|s| sees_inside(camera, s, near)).collect(),
+            inside: scene.spheres().iter().map(|s| sees_inside(camera, s)).collect(),
         }
     }
 
@@ -66,23 +67,34 @@ fn height(camera: &Camera, sphere: &Sphere) -> f64 {
 }
 
 /// A camera on the surface is on the side that it looks to.
-fn sees_inside(camera: &Camera, sphere: &Sphere, near: f64) -> bool {
+fn sees_inside(camera: &Camera, sphere: &Sphere) -> bool {
     let height = height(camera, sphere);
-    if height.abs() <= near {
-        camera.forward().dot(camera.position() - sphere.center()) < 0.0
-    } else {
-        height < 0.0
-    }
+    let (position, center) = (camera.position(), sphere.center());
+    let near = ON_SURFACE * (position.length() + center.length() + sphere.radius());
+    if height.abs() <= near { camera.forward().dot(position - center) < 0.0 } else { height < 0.0 }
 }
 
-/// The box of what light can reach. Spheres enter in the order of their radii; one
+/// The spheres that are not scenery, in the order of their radii.
+fn near_spheres(scene: &Scene) -> Vec<&Sphere> {
+    let distance = |s: &Sphere| height(scene.camera(), s).abs();
+    let mut distances: Vec<f64> = scene.spheres().iter().map(distance).collect();
+    distances.sort_by(f64::total_cmp);
+    // The lower median; a camera that stands on a surface has distance 0, which is no scale.
+    let before = distances.len().saturating_sub(1) / 2;
+    let median = distances.iter().skip(before).find(|&&distance| distance > 0.0);
+    let limit = median.map_or(f64::INFINITY, |median| FAR * median);
+    let mut near: Vec<&Sphere> = scene.spheres().iter().filter(|s| distance(s) <= limit).collect();
+    near.sort_by(|a, b| a.radius().total_cmp(&b.radius()));
+    near
+}
+
+/// The box of what light can reach nearby. Spheres enter in the order of their radii; one
 /// that is larger than the distances met so far is a wall, of which only the surface
 /// nearest to the rest counts, so that the far side of a huge sphere does not. The
 /// smallest has no rest to be large beside, only the camera.
 fn bounds(scene: &Scene) -> (DVec3, DVec3) {
     let camera = scene.camera().position();
-    let mut spheres: Vec<&Sphere> = scene.spheres().iter().collect();
-    spheres.sort_by(|a, b| a.radius().total_cmp(&b.radius()));
+    let spheres = near_spheres(scene);
     let Some((smallest, rest)) = spheres.split_first() else {
         return (camera, camera);
     };
@@ -92,7 +104,7 @@ fn bounds(scene: &Scene) -> (DVec3, DVec3) {
         (low, high) = (low.min(l), high.max(h));
     }
     let extent = (high - low).length() / 2.0;
-    if extent == 0.0 || camera.distance(low.midpoint(high)) <= FAR_CAMERA * extent {
+    if extent == 0.0 || camera.distance(low.midpoint(high)) <= FAR * extent {
         (low, high) = (low.min(camera), high.max(camera));
     }
     // A camera on the only sphere, or on the very points that count, has no distance yet.

@@ -93,6 +93,23 @@ fn the_relative_error_is_that_of_bernoulli_hits() {
     assert!((found / expected - 1.0).abs() < 0.024, "{found} for {expected}");
 }
 
+/// Hits of 2¹⁵ film steps, whose square leaves nothing in the sums: the error that is
+/// stated must not be smaller than the true one, √((1-p)/(pn)).
+#[test]
+fn what_truncation_hides_is_charged() {
+    let step = SampleScale::from_bound(64.0).step();
+    #[expect(clippy::cast_possible_truncation, reason = "a power of two")]
+    let dim = (32_768.0 * step) as f32;
+    let mut random = Uniform(5);
+    let film = film(16, 16, 64, |_, _| [if random.next() < 0.25 { dim } else { 0.0 }; 3]);
+    let summary = summarize(&film);
+    assert_eq!(summary.coarse_pixels + summary.unproven_pixels, 256);
+    let truth = (3.0_f64 / 64.0).sqrt();
+    assert!(summary.relative_error.is_some_and(|stated| stated > truth), "{summary:?}");
+    let pixel = estimate(&film, &film.pixels()[0]);
+    assert!(pixel.hits.is_finite() && pixel.variance > 0.0, "{pixel:?}");
+}
+
 #[test]
 fn coarse_pixels_are_counted() {
     let step = SampleScale::from_bound(64.0).step();

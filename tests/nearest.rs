@@ -178,15 +178,17 @@ fn a_ray_does_not_meet_the_sphere_that_it_leaves() {
 /// Equal distances: the lowest index of the file wins, within a form and across.
 #[test]
 fn ties_go_to_the_first_in_the_file() {
-    let ball = |rho| sphere(DVec3::ZERO, 1.0, diffuse(rho));
-    let wall = || sphere([0.0, 0.0, -4096.0], 4097.0, diffuse(0.1));
+    // All of them touch in (0, 0, 1), in front of the ray.
+    let ball = |radius: f64| sphere([0.0, 0.0, 1.0 - radius], radius, diffuse(0.1));
+    let wall = || ball(4097.0);
     let lamp = || sphere([0.0, 4.0, 0.0], 0.5, emitter([1.0; 3]));
     let scenes = [
-        vec![ball(0.1), ball(0.2), lamp()],
-        vec![lamp(), ball(0.1), ball(0.2)],
-        vec![wall(), wall(), lamp()],
-        vec![wall(), ball(0.1), lamp()],
-        vec![ball(0.1), wall(), lamp()],
+        vec![ball(1.0), ball(2.0), lamp()],
+        vec![lamp(), ball(2.0), ball(1.0)],
+        // A nanometre apart: two walls to the file, one to the device.
+        vec![wall(), ball(4097.0 + 1e-9), lamp()],
+        vec![wall(), ball(1.0), lamp()],
+        vec![ball(1.0), wall(), lamp()],
     ];
     for (spheres, first) in scenes.into_iter().zip([0, 1, 0, 0, 0]) {
         let scene = seen([0.0, 0.0, 5.0], DVec3::ZERO, size(1, 1), 0, spheres);

@@ -104,6 +104,77 @@ fn the_packed_scene_does_not_depend_on_where_and_how_large_the_scene_is() {
     assert_eq!(build(1.0, 65_536.0), reference, "translated");
 }
 
+/// A sky around the scene, a sun far behind it and a speck farther away move nothing: not
+/// the focus, not the extent, and not the sides of what is near.
+#[test]
+fn scenery_does_not_move_the_focus() {
+    let near = || vec![sphere([0.0; 3], 1.0, white()), sphere([3.0, 0.0, 0.0], 0.5, white())];
+    let viewpoint = |far: Option<Sphere>| {
+        let spheres = near().into_iter().chain(far).collect();
+        Viewpoint::of(&scene([0.0, 0.0, 4.0], [0.0; 3], spheres))
+    };
+    let reference = viewpoint(None);
+    for far in [
+        sphere([0.0; 3], 1e7, white()),
+        sphere([0.0, 0.0, 1.5e11], 7e8, white()),
+        sphere([0.0, 0.0, -3e7], 1e-3, white()),
+    ] {
+        let found = viewpoint(Some(far));
+        assert_eq!(found.focus(), reference.focus());
+        assert_eq!(found.extent().to_bits(), reference.extent().to_bits());
+        assert_eq!(found.inside()[..2], [false, false]);
+    }
+}
+
+/// Not a wall: the camera is many radii away, where the centre form is the better one.
+#[test]
+fn far_spheres_are_factored_however_small_the_rest() {
+    let spheres = || vec![sphere([0.0, 3.05, 0.0], 0.05, white()), sphere([0.0; 3], 3.0, white())];
+    for (distance, form) in [(10.0, Form::Anchored), (100.0, Form::Factored)] {
+        let scene = scene([0.0, 0.0, distance], [0.0; 3], spheres());
+        let packed = pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits");
+        assert_eq!(packed.forms, [Form::Factored, form], "{distance}");
+    }
+}
+
+/// Only the first of spheres in one place can be seen.
+#[test]
+fn coincident_spheres_are_one() {
+    let lamp = Surface::Emitter(Radiance::new(DVec3::ONE).expect("a radiance"));
+    let spheres = vec![
+        sphere([0.0, 1.0, 0.0], 2.0, white()),
+        sphere([-0.0, 1.0, 0.0], 2.0, lamp),
+        sphere([0.0, 1.0, 0.0], 2.5, white()),
+    ];
+    let scene = scene([0.0, 0.0, 9.0], [0.0; 3], spheres);
+    assert_eq!((scene.spheres().len(), scene.has_lights()), (2, false));
+}
+
+/// -0.0 is a radiance and an albedo like 0.0; as a bit pattern it would be out of bounds.
+#[test]
+fn minus_zero_is_zero() {
+    let rgb = DVec3::new(-0.0, 1.0, 1.0);
+    let radiance = Radiance::new(rgb).expect("a radiance").rgb();
+    let albedo = Albedo::new(rgb).expect("an albedo").rgb();
+    assert!(radiance.x.is_sign_positive() && albedo.x.is_sign_positive());
+}
+
+/// 2·0.9 to the 64th leaves the film's step far above a millionth of the light.
+#[test]
+fn more_bounces_than_the_film_resolves_are_refused() {
+    let lamp = Surface::Emitter(Radiance::new(DVec3::ONE).expect("a radiance"));
+    let chalk = Surface::Diffuse(Albedo::new(DVec3::splat(0.9)).expect("an albedo"));
+    let spheres = vec![sphere([0.0; 3], 9.0, chalk), sphere([0.0; 3], 1.0, lamp)];
+    let scene = scene([0.0, 0.0, 4.0], [0.0; 3], spheres);
+    let check = |bounces| {
+        let settings = scene.settings().with_bounces(bounces).expect("bounces");
+        candor::bound::check(&scene.clone().with_settings(settings))
+    };
+    // 2⁻⁶³·1.8^k <= 1e-6 up to k = 50.8, and the step is that or half of it.
+    assert!(check(50).is_ok() && check(52).is_err());
+    assert!(check(64).expect_err("too many").0.contains("at most 5"));
+}
+
 #[test]
 fn a_far_camera_does_not_move_the_focus() {
     let ball = vec![sphere([0.0, 0.0, 0.0], 1.0, white())];
@@ -132,15 +203,17 @@ fn sides_follow_the_camera() {
 #[test]
 fn a_camera_on_a_surface_is_on_the_side_that_it_looks_to() {
     let ball = || vec![sphere([5.0, 0.0, 0.0], 0.1, white()), sphere([0.0; 3], 1.0, white())];
-    for off in [0.0, 1e-7, -1e-7] {
+    for off in [0.0, 2e-16, -2e-16] {
         let position = [0.0, 0.0, 1.0 + off];
         let outward = Viewpoint::of(&scene(position, [0.0, 0.0, 9.0], ball()));
         assert_eq!(outward.inside(), [false, false], "{off}");
         let inward = Viewpoint::of(&scene(position, [0.0, 0.0, -9.0], ball()));
         assert_eq!(inward.inside(), [false, true], "{off}");
     }
-    let above = Viewpoint::of(&scene([0.0, 0.0, 1.001], [0.0, 0.0, -9.0], ball()));
-    assert_eq!(above.inside(), [false, false]);
+    for (height, inside) in [(1e-12, false), (-1e-12, true)] {
+        let off = Viewpoint::of(&scene([0.0, 0.0, 1.0 + height], [0.0, 0.0, -9.0], ball()));
+        assert_eq!(off.inside(), [false, inside], "{height}");
+    }
 }
 
 #[test]

@@ -26,8 +26,10 @@ pub(super) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Renders a scene to EXR and PNG.
+    #[command(allow_negative_numbers = true)]
     Render(RenderArgs),
-    /// Checks this machine's device against the f64 reference; exits 1 if it disagrees.
+    /// Checks this machine's device against the f64 reference; exits 1 unless it agrees.
+    #[command(allow_negative_numbers = true)]
     Verify(VerifyArgs),
     /// Lists what can render here.
     Devices,
@@ -86,14 +88,14 @@ pub(super) struct RenderArgs {
     /// SCENE.png in the current folder.
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Sample indices A..B, half-open, from 0 to 2^56; a part of a render.
+    /// Only the sample indices A..B (half-open, below 2^56) of the picture.
     #[arg(long, value_name = "A..B", value_parser = parse_samples, conflicts_with = "spp")]
     pub samples: Option<Range<u64>>,
     /// Stop after this long, such as 30s or 5m.
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     pub time: Option<Duration>,
     /// Brightens the PNG by this many stops.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true,
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0,
           value_parser = parse_exposure)]
     pub exposure: f64,
     /// Replace a film even if it holds more samples.
@@ -120,12 +122,12 @@ impl FromStr for DeviceChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text {
+        match text.to_lowercase().as_str() {
             "auto" => Ok(Self::Auto),
             "gpu" => Ok(Self::Gpu),
             "cpu" => Ok(Self::Cpu),
             "" => Err("expected auto, gpu, cpu or part of an adapter's name".to_owned()),
-            name => Ok(Self::Named(name.to_owned())),
+            _ => Ok(Self::Named(text.to_owned())),
         }
     }
 }

@@ -74,7 +74,12 @@ fn report_panics() {
     }));
 }
 
-/// Whether messages go to a person's terminal.
+/// Whether messages go to a terminal that can move its cursor.
 fn on_terminal() -> bool {
-    std::io::stderr().is_terminal()
+    std::io::stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
+
+/// Whether messages may be coloured (see no-color.org).
+fn in_colour() -> bool {
+    on_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }

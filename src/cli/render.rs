@@ -26,6 +26,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
         if scene.has_lights() { trace(args, &scene, &plan)? } else { darkness(&scene, &plan)? };
     let picture = Picture::develop(&finished.film, !scene.has_lights());
     let provenance = finished.provenance(args, &scene);
+    interrupt::writing_begins();
     let files = outputs.write(&picture, &provenance, args.exposure)?;
     streams::results(&finished.report(args, &files))?;
     Ok(if finished.outcome.stop == Stop::Interrupted { INTERRUPTED } else { DONE })
@@ -51,10 +52,10 @@ struct Finished {
 
 fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refusal> {
     let common = &args.common;
+    let interrupt = interrupt::watch()?;
     let chosen = choose::choose(&common.device, common.threads)?;
     let needed = memory::needed(scene.size(), chosen.on_processor());
     memory::check(scene.size(), needed)?;
-    let interrupt = interrupt::watch()?;
     let mut tracer = chosen.tracer(scene)?;
     let description = tracer.describe();
 
@@ -140,6 +141,8 @@ impl Finished {
             tracer: self.tracer.clone(),
             seconds: self.seconds(),
             invalid_samples: self.ledger.count,
+            unproven_pixels: self.summary.unproven_pixels,
+            coarse_pixels: self.summary.coarse_pixels,
             relative_error: self.summary.relative_error,
         }
     }

@@ -1,13 +1,13 @@
 //! From the scene file and the command line to the scene that is rendered.
 
 use super::args::CommonArgs;
-use super::{Refusal, on_terminal, refuse};
+use super::{Refusal, in_colour, refuse};
+use crate::bound;
 use crate::scene::{self, Scene};
 
 /// Loads the scene and applies what the command line says otherwise.
 pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
-    let mut scene =
-        scene::load(&args.scene).map_err(|error| Refusal(error.render(on_terminal())))?;
+    let mut scene = scene::load(&args.scene).map_err(|error| Refusal(error.render(in_colour())))?;
     if let Some(size) = args.size {
         scene = scene.with_size(size);
     }
@@ -23,5 +23,7 @@ pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
     }
     settings = settings.with_seed(args.seed.unwrap_or(settings.seed()));
     settings = settings.with_estimator(args.estimator.unwrap_or(settings.estimator()));
-    Ok(scene.with_settings(settings))
+    let scene = scene.with_settings(settings);
+    bound::check(&scene)?;
+    Ok(scene)
 }

@@ -31,6 +31,10 @@ impl PixelEstimate {
     }
 }
 
+/// Below this many film steps a pixel's mean is coarse: what truncation hides is no
+/// longer small beside it.
+pub(super) const COARSE: f64 = 1e6;
+
 /// Estimates one pixel of a film from its words.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "from exact integers to the nearest f64")]
@@ -38,26 +42,32 @@ pub fn estimate(film: &Film, words: &PixelWords) -> PixelEstimate {
     let samples = film.samples().count();
     let [r, g, b, squares] = sums(words);
     let step = film.scale().step();
-    let n = samples as f64;
-    let mean = |sum: u128| if samples == 0 { 0.0 } else { sum as f64 * step / n };
+    let n = samples.max(1) as f64;
     // ΣY·2¹⁶, exact: the luminance of the sums.
     let weighted: u128 =
         [r, g, b].iter().zip(LUMINANCE_WEIGHTS).map(|(&sum, w)| sum * u128::from(w)).sum();
-    let sum = weighted as f64 / 65_536.0 * step;
-    let sum_of_squares = squares as f64 * 4_294_967_296.0 * step * step;
+    let mean = weighted as f64 / 65_536.0 / n;
+    let hidden = hidden(mean);
+    let mean_square = squares as f64 * 4_294_967_296.0 / n + hidden;
     PixelEstimate {
-        rgb: [mean(r), mean(g), mean(b)],
-        luminance: if samples == 0 { 0.0 } else { sum / n },
-        variance: variance(samples, weighted, squares) * step * step,
-        hits: if weighted == 0 { 0.0 } else { sum * (sum / sum_of_squares) },
+        rgb: [r, g, b].map(|sum| sum as f64 * step / n),
+        luminance: mean * step,
+        variance: (variance(samples, weighted, squares) + hidden) * step * step,
+        hits: if weighted == 0 { 0.0 } else { n * mean * (mean / mean_square) },
     }
+}
+
+/// What truncation may hide of a coarse pixel's mean square, in squared film steps: the
+/// film sums ⌊Y²/2³²⌋ of a Y that is itself rounded down. Nothing is proven below that.
+fn hidden(mean: f64) -> f64 {
+    if mean > 0.0 && mean < COARSE { 4_294_967_296.0 + 2.0 * mean } else { 0.0 }
 }
 
 /// Sample variance in squared film steps: (N·ΣY² - (ΣY)²)/(N(N-1)), the difference
 /// formed exactly, in 256 bits, so that a constant sample has variance exactly 0.
 ///
 /// The film truncates Y and Y²/2³² downwards, so the difference can come out below
-/// zero by less than N²·2³² steps², which is then 0 (DESIGN.md, "The exact film").
+/// zero by less than N²·(2³² + 2Y) steps², which is then 0 (DESIGN.md, "The exact film").
 #[expect(clippy::cast_precision_loss, reason = "after the exact difference")]
 fn variance(samples: u64, weighted: u128, squares: u128) -> f64 {
     if samples < 2 {

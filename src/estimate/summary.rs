@@ -1,10 +1,7 @@
 //! The error of a whole picture, without a reference.
 
-use super::pixel::estimate;
+use super::pixel::{COARSE, estimate};
 use crate::film::Film;
-
-/// A film step larger than this fraction of a pixel's mean is reported.
-const COARSE: f64 = 1e-6;
 
 /// What a film says about its picture as a whole.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +50,7 @@ pub fn summarize(film: &Film) -> Summary {
         luminance += pixel.luminance / pixels;
         variance += pixel.variance / samples as f64 / pixels;
         unproven_pixels += u64::from(pixel.is_unproven());
-        let coarse = film.scale().step() > COARSE * pixel.luminance;
+        let coarse = pixel.luminance < COARSE * film.scale().step();
         coarse_pixels += u64::from(coarse && !pixel.is_unproven());
     }
     let measured = samples >= 2 && luminance > 0.0;

@@ -23,7 +23,11 @@ pub(super) struct Band {
 /// Makes the film's buffers, filled with zeros.
 pub(super) fn allocate(gpu: &Gpu, size: ImageSize) -> Result<Vec<Band>, TraceError> {
     let limits = gpu.device().limits();
-    let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    let binding = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size)
+        // The kernel counts words in 32 bits.
+        .min(u64::from(u32::MAX));
     let row_bytes = u64::from(size.width()) * BYTES_PER_PIXEL;
     let rows = u32::try_from(binding / row_bytes).unwrap_or(u32::MAX).min(size.height());
     if rows == 0 {

@@ -42,12 +42,17 @@ impl KernelUnits {
     }
 }
 
+/// A sphere that the camera is farther from than this many radii is small, whatever the
+/// extent: the anchored discriminant is off by 3u(distance/R)², the factored miss distance
+/// by 3u(distance/R) of the radius, and they meet near six radii.
+const SMALL_FROM: f64 = 8.0;
+
 /// How a sphere is intersected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// By centre and radius: spheres up to the scene's extent.
+    /// By centre and radius: spheres up to the scene's extent, and far ones.
     Factored,
-    /// By curvature and the tangent at the focus: larger ones.
+    /// By curvature and gradient at the focus: larger ones.
     Anchored,
 }
 
@@ -74,10 +79,7 @@ pub fn pack(
         return Err(TooManySpheres(spheres.len()));
     }
     let units = KernelUnits::of(viewpoint);
-    let forms: Vec<Form> = spheres
-        .iter()
-        .map(|s| if s.radius() <= viewpoint.extent() { Form::Factored } else { Form::Anchored })
-        .collect();
+    let forms: Vec<Form> = spheres.iter().map(|s| form_of(s, scene, viewpoint)).collect();
     let of_form = |wanted| {
         let matches = std::iter::zip(0.., &forms).filter(move |(_, form)| **form == wanted);
         matches.map(|(index, _): (usize, _)| index)
@@ -95,6 +97,12 @@ pub fn pack(
     packed.film_shift = scale.shift();
     packed.bound_bits = scale.bound().to_bits();
     Ok(Packed { scene: packed, forms })
+}
+
+fn form_of(sphere: &Sphere, scene: &Scene, viewpoint: &Viewpoint) -> Form {
+    let distance = scene.camera().position().distance(sphere.center());
+    let small = sphere.radius() <= viewpoint.extent() || distance > SMALL_FROM * sphere.radius();
+    if small { Form::Factored } else { Form::Anchored }
 }
 
 fn pack_camera(packed: &mut layout::Scene, scene: &Scene, units: &KernelUnits) {

@@ -46,6 +46,10 @@ pub struct Provenance {
     pub seconds: f64,
     /// Invalid samples; they count as zeros.
     pub invalid_samples: u64,
+    /// Pixels that no sample has contributed to yet.
+    pub unproven_pixels: u64,
+    /// Pixels whose film step exceeds 1e-6 of their mean.
+    pub coarse_pixels: u64,
     /// Relative RMS error of the picture, where it is known.
     pub relative_error: Option<f64>,
 }
@@ -66,6 +70,8 @@ impl Provenance {
             ("driver", self.tracer.driver.clone()),
             ("seconds", format!("{:.3}", self.seconds)),
             ("invalidSamples", self.invalid_samples.to_string()),
+            ("unprovenPixels", self.unproven_pixels.to_string()),
+            ("coarsePixels", self.coarse_pixels.to_string()),
         ];
         if let Some(error) = self.relative_error {
             list.push(("relativeError", error.to_string()));

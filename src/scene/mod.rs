@@ -21,6 +21,7 @@ pub use settings::{Estimator, RenderSettings};
 pub use sphere::{Albedo, Exponent, Radiance, Sphere, Surface};
 
 use glam::DVec3;
+use std::collections::HashSet;
 
 /// Largest magnitude of a coordinate or radius, in scene units.
 pub const MAX_LENGTH: f64 = 1e15;
@@ -87,13 +88,21 @@ pub struct Scene {
 
 impl Scene {
     /// Puts checked parts together; any combination of them is a scene.
+    ///
+    /// Of spheres with the same centre and radius only the first can ever be seen, from
+    /// either side; the others are left out.
     #[must_use]
     pub fn new(
         camera: Camera,
         size: ImageSize,
         settings: RenderSettings,
-        spheres: Vec<Sphere>,
+        mut spheres: Vec<Sphere>,
     ) -> Self {
+        let mut places = HashSet::new();
+        spheres.retain(|sphere| {
+            let place = (sphere.center() + DVec3::ZERO).extend(sphere.radius());
+            places.insert(place.to_array().map(f64::to_bits))
+        });
         Self { camera, size, settings, spheres }
     }
 

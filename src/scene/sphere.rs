@@ -12,7 +12,7 @@ impl Albedo {
     /// If a channel is outside [0, 1] or NaN.
     pub fn new(rho: DVec3) -> Result<Self, Invalid> {
         if rho.to_array().iter().all(|c| (0.0..=1.0).contains(c)) {
-            Ok(Self(rho))
+            Ok(Self(without_minus_zero(rho)))
         } else {
             refuse("an albedo per channel, each from 0 to 1")
         }
@@ -36,7 +36,7 @@ impl Radiance {
     pub fn new(rgb: DVec3) -> Result<Self, Invalid> {
         let in_range = rgb.to_array().iter().all(|c| (0.0..=MAX_RADIANCE).contains(c));
         if in_range && rgb.max_element() >= MIN_RADIANCE {
-            Ok(Self(rgb))
+            Ok(Self(without_minus_zero(rgb)))
         } else {
             refuse(format!(
                 "a radiance per channel, each from 0 to {MAX_RADIANCE:e}, the largest at least {MIN_RADIANCE:e}"
@@ -133,4 +133,9 @@ impl Sphere {
     pub fn surface(&self) -> Surface {
         self.surface
     }
+}
+
+/// A sample of -0.0 would look negative to the film, which compares bit patterns.
+fn without_minus_zero(rgb: DVec3) -> DVec3 {
+    rgb + DVec3::ZERO
 }
