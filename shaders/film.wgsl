@@ -65,22 +65,18 @@ fn square(y: vec2<u32>) -> vec3<u32> {
 
 // Adds one word of a sample's share to the film and returns the carry out. A word
 // that is all ones takes a carry by becoming zero and passing it on; each carry is
-// made by exactly one invocation, so the sums are right whatever the order.
+// made by exactly one invocation, so the sums are right whatever the order. Zeros are
+// added too: sparing them costs a group of invocations more than it saves.
 fn add_word(word: u32, value: u32, carry: u32) -> u32 {
     let addend = value + carry;
-    if addend == 0u {
-        // Nothing to add, or a value of all ones whose carry passes through.
-        return carry & u32(value != 0u);
-    }
     let before = atomicAdd(&film[word], addend);
-    return u32(before + addend < before);
+    // The addend itself wraps where a value of all ones meets a carry.
+    return u32(before + addend < before) | (carry & u32(addend == 0u));
 }
 
-// Adds a two-word integer to a three-word sum.
-fn add_channel(word: u32, value: vec2<u32>) {
-    var carry = add_word(word, value.x, 0u);
-    carry = add_word(word + 1u, value.y, carry);
-    add_word(word + 2u, 0u, carry);
+// Adds a two-word integer and returns the carry out.
+fn add_pair(word: u32, value: vec2<u32>) -> u32 {
+    return add_word(word + 1u, value.y, add_word(word, value.x, 0u));
 }
 
 // Adds one sample to the pixel whose first word is `word`.
@@ -88,12 +84,14 @@ fn add_sample(word: u32, radiance: vec3<f32>) {
     let r = to_fixed(radiance.x, scene.film_shift);
     let g = to_fixed(radiance.y, scene.film_shift);
     let b = to_fixed(radiance.z, scene.film_shift);
-    add_channel(word, r);
-    add_channel(word + 3u, g);
-    add_channel(word + 6u, b);
     let squared = square(luminance(r, g, b));
-    var carry = add_word(word + 9u, squared.x, 0u);
-    carry = add_word(word + 10u, squared.y, carry);
-    carry = add_word(word + 11u, squared.z, carry);
-    add_word(word + 12u, 0u, carry);
+    // Bit k stands for a carry into word k: the last word of each sum gets nothing else,
+    // and carries are rare.
+    var carries = add_pair(word, r) << 2u;
+    carries |= add_pair(word + 3u, g) << 5u;
+    carries |= add_pair(word + 6u, b) << 8u;
+    carries |= add_word(word + 11u, squared.z, add_pair(word + 9u, squared.xy)) << 12u;
+    for (; carries != 0u; carries &= carries - 1u) {
+        atomicAdd(&film[word + firstTrailingBit(carries)], 1u);
+    }
 }

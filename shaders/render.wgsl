@@ -12,12 +12,8 @@ fn render(@builtin(global_invocation_id) id: vec3<u32>) {
     let high = work.first_sample_high + u32(low < id.z);
     let key = SampleKey(pixel.y * WIDTH + pixel.x, low, high);
     let sample = trace(pixel, key);
-    if !sample.finished {
-        record_invalid(key, REASON_UNFINISHED);
-        return;
-    }
-    if exceeds_bound(sample.radiance) {
-        record_invalid(key, REASON_OUT_OF_BOUNDS);
+    if !sample.finished || exceeds_bound(sample.radiance) {
+        record_invalid(key, select(REASON_OUT_OF_BOUNDS, REASON_UNFINISHED, !sample.finished));
         return;
     }
     if all(sample.radiance == vec3<f32>(0.0)) {

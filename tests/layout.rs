@@ -46,7 +46,7 @@ macro_rules! mirror {
     }};
 }
 
-fn mirrors() -> [Layout; 5] {
+fn mirrors() -> [Layout; 4] {
     [
         mirror!(Sphere { position, size, color, exponent, offset, index, kind, inside }),
         mirror!(Scene {
@@ -70,7 +70,6 @@ fn mirrors() -> [Layout; 5] {
             row_start,
             row_end
         }),
-        mirror!(Record { pixel, index_low, index_high, reason }),
         mirror!(Ledger { count, records }),
     ]
 }
@@ -127,12 +126,7 @@ fn a_wrong_layout_is_rejected() {
         ("Scene", "sphere_count: u32,\n    spheres", "sphere_count: vec4<u32>,\n    spheres"),
         ("Scene", "origin: vec3<f32>,\n    seed: u32,", "seed: u32,\n    origin: vec3<f32>,"),
         ("Dispatch", "row_start: u32,\n    row_end: u32,", "row_end: u32,\n    row_start: u32,"),
-        (
-            "Record",
-            "index_low: u32,\n    index_high: u32,\n    reason",
-            "index_high: u32,\n    index_low: u32,\n    reason",
-        ),
-        ("Ledger", "array<Record, LEDGER_RECORDS>", "array<Record, 17>"),
+        ("Ledger", "array<u32, LEDGER_RECORDS * RECORD_WORDS>", "array<u32, 65>"),
     ];
     let kernel = general_kernel();
     for (name, from, to) in faults {

@@ -215,7 +215,12 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
         "sqrt(max(q.discriminant, 0.0)) + abs(q.c))",
         Judge::Classic,
     ),
-    ("carry dropped", "return u32(before + addend < before);", "return 0u;", Judge::Shell),
+    (
+        "carry dropped",
+        "return u32(before + addend < before) | (carry & u32(addend == 0u));",
+        "return 0u;",
+        Judge::Shell,
+    ),
     (
         "carry of the value alone",
         "let addend = value + carry;",
@@ -226,12 +231,7 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
     ("luminance weights exchanged", "13933u, 46871u", "46871u, 13933u", Judge::Shell),
     ("a carry in the luminance", "u32(low < base)", "0u", Judge::Shell),
     ("a bit of the square", "| (cross.x >> 31u)", "| (cross.x >> 30u)", Judge::Shell),
-    (
-        "green and blue exchanged",
-        "add_channel(word + 3u, g)",
-        "add_channel(word + 3u, b)",
-        Judge::Shell,
-    ),
+    ("green and blue exchanged", "add_pair(word + 3u, g)", "add_pair(word + 3u, b)", Judge::Shell),
     ("index without carry", "u32(low < id.z)", "0u", Judge::Divisions),
     ("seed ignored", "| block, scene.seed)", "| block, 0u)", Judge::Seeds),
 ];

@@ -201,11 +201,11 @@ impl Tracer for GpuTracer {
     fn ledger(&mut self) -> Result<Ledger, TraceError> {
         let bytes = bands::read_buffer(&self.gpu, &self.ledger)?;
         let ledger: layout::Ledger = bytemuck::pod_read_unaligned(&bytes);
-        let recorded = layout::LEDGER_RECORDS.min(ledger.count as usize);
-        let records = ledger.records[..recorded].iter().map(|record| InvalidSample {
-            pixel: record.pixel,
-            index: u64::from(record.index_high) << 32 | u64::from(record.index_low),
-            reason: match record.reason {
+        let records = ledger.records.as_chunks().0.iter().take(ledger.count as usize);
+        let records = records.map(|&[pixel, low, high, reason]| InvalidSample {
+            pixel,
+            index: u64::from(high) << 32 | u64::from(low),
+            reason: match reason {
                 layout::REASON_UNFINISHED => InvalidReason::Unfinished,
                 _ => InvalidReason::OutOfBounds,
             },

@@ -91,26 +91,13 @@ pub struct Dispatch {
     pub row_end: u32,
 }
 
-/// The address of an invalid sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Record {
-    /// Pixel number.
-    pub pixel: u32,
-    /// Low word of the sample index.
-    pub index_low: u32,
-    /// High word of the sample index.
-    pub index_high: u32,
-    /// One of the `REASON_` constants.
-    pub reason: u32,
-}
-
 /// Invalid samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Ledger {
     /// How many.
     pub count: u32,
-    /// The first ones.
-    pub records: [Record; LEDGER_RECORDS],
+    /// The first ones, four words each: pixel, low and high word of the sample index, and
+    /// one of the `REASON_` constants.
+    pub records: [u32; 4 * LEDGER_RECORDS],
 }
