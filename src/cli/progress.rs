@@ -14,6 +14,9 @@ pub(super) struct Reporter {
     pixels: u32,
     planned: u64,
     limit: Option<Duration>,
+    /// Samples and time after the first round, which compiles the kernel and so says
+    /// nothing about the rate of the others.
+    first: Option<(u64, Duration)>,
 }
 
 enum Style {
@@ -30,7 +33,7 @@ impl Reporter {
             (false, true) => Style::Bar(bar()),
             (false, false) => Style::Lines { next: Duration::ZERO },
         };
-        Self { style, pixels, planned, limit }
+        Self { style, pixels, planned, limit, first: None }
     }
 
     /// A line that stays on the screen.
@@ -49,7 +52,9 @@ impl Reporter {
 
     /// Tells of a round.
     pub fn observe(&mut self, progress: Progress) {
-        let (text, share) = (self.text(&progress), self.share(&progress));
+        let first = *self.first.get_or_insert((progress.done, progress.elapsed));
+        let (text, share) = (self.text(&progress, first), self.share(&progress));
+        let tells_rate = progress.done > first.0 || progress.done == self.planned;
         match &mut self.style {
             Style::Quiet => {}
             Style::Bar(bar) => {
@@ -57,7 +62,7 @@ impl Reporter {
                 bar.set_message(text);
             }
             Style::Lines { next } => {
-                if progress.elapsed >= *next {
+                if progress.elapsed >= *next && tells_rate {
                     streams::message(&text);
                     *next = progress.elapsed + LINE_EVERY;
                 }
@@ -73,17 +78,22 @@ impl Reporter {
     }
 
     #[expect(clippy::cast_precision_loss, reason = "for show")]
-    fn text(&self, progress: &Progress) -> String {
-        let seconds = progress.elapsed.as_secs_f64().max(1e-9);
-        let rate = progress.done as f64 * f64::from(self.pixels) / seconds;
+    fn text(&self, progress: &Progress, first: (u64, Duration)) -> String {
+        let elapsed = progress.elapsed.as_secs_f64();
+        let (samples, seconds) = match progress.done - first.0 {
+            0 => (progress.done, elapsed),
+            samples => (samples, elapsed - first.1.as_secs_f64()),
+        };
+        let frames = samples as f64 / seconds.max(1e-9);
+        let rate = frames * f64::from(self.pixels);
         let error = progress
             .summary
             .and_then(|summary| Some((summary.relative_error?, summary.samples)))
             // The look may be some samples old; the error falls with their square root.
             .map(|(error, at)| error * (at as f64 / progress.done as f64).sqrt())
             .map_or(String::new(), |error| format!(", error {:.2} %", 100.0 * error));
-        let by_samples = seconds * (self.planned - progress.done) as f64 / progress.done as f64;
-        let by_time = self.limit.map_or(f64::INFINITY, |l| (l.as_secs_f64() - seconds).max(0.0));
+        let by_samples = (self.planned - progress.done) as f64 / frames;
+        let by_time = self.limit.map_or(f64::INFINITY, |l| (l.as_secs_f64() - elapsed).max(0.0));
         let left = by_samples.min(by_time);
         format!("{} spp, {}{error}, {} left", progress.done, units::rate(rate), units::time(left))
     }

@@ -19,7 +19,8 @@ fn results_and_messages_are_apart() {
     let messages: Vec<&str> = ended.stderr.lines().collect();
     assert!(messages[0].starts_with("8x6 pixels on CPU twin"), "{messages:?}");
     assert!(messages[0].ends_with(" kB of memory"), "{messages:?}");
-    assert!(messages[1].starts_with("1 spp, "), "{messages:?}");
+    // The first round compiles the kernel and tells no rate, so the first line is a later one.
+    assert!(messages[1].contains(" spp, "), "{messages:?}");
     assert!(messages[1].ends_with(" left"), "{messages:?}");
 }
 
