@@ -27,6 +27,21 @@ fn a_signal_writes_what_is_there() {
     }
 }
 
+/// A supervisor may send a signal to the process and one to its group: within a second
+/// they are one request, and the picture is written.
+#[test]
+fn two_signals_at_once_are_one() {
+    let folder = Folder::new();
+    let arguments = "render scene.toml --spp 4294967296 --quiet --json --device cpu --size 512x512";
+    let mut running = Running::start(&mut folder.command(arguments));
+    sleep(Duration::from_millis(500));
+    signal(&running, "TERM");
+    sleep(Duration::from_millis(5));
+    signal(&running, "TERM");
+    running.end().with_code(130);
+    assert_eq!(folder.files(), ["scene.exr", "scene.png"]);
+}
+
 /// A closed room with many bounces: the first sample of every pixel alone, which the
 /// first signal waits for, takes long enough for a second one.
 #[test]
