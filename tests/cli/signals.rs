@@ -32,9 +32,9 @@ fn a_signal_writes_what_is_there() {
 #[test]
 fn two_signals_at_once_are_one() {
     let folder = Folder::new();
-    let arguments = "render scene.toml --spp 4294967296 --quiet --json --device cpu --size 512x512";
+    let arguments = "render scene.toml --spp 4294967296 --json --device cpu --size 512x512";
     let mut running = Running::start(&mut folder.command(arguments));
-    sleep(Duration::from_millis(500));
+    running.wait_for(" spp, ");
     signal(&running, "TERM");
     sleep(Duration::from_millis(5));
     signal(&running, "TERM");
