@@ -52,7 +52,7 @@ fn mean_and_variance_are_those_of_the_samples() {
     assert!((pixel.luminance - 3.0).abs() < 1e-14, "{pixel:?}");
     assert!((pixel.variance - 14.0 / 3.0).abs() < 1e-12, "{pixel:?}");
     assert!((pixel.standard_error(4) - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12);
-    assert!((pixel.hits - 144.0 / 50.0).abs() < 1e-12, "(1+2+3+6)²/(1+4+9+36): {pixel:?}");
+    assert!((pixel.hits(4) - 144.0 / 50.0).abs() < 1e-12, "(1+2+3+6)²/(1+4+9+36): {pixel:?}");
 }
 
 /// Whatever its value and channels, a constant has variance exactly 0.
@@ -107,7 +107,7 @@ fn what_truncation_hides_is_charged() {
     let truth = (3.0_f64 / 64.0).sqrt();
     assert!(summary.relative_error.is_some_and(|stated| stated > truth), "{summary:?}");
     let pixel = estimate(&film, &film.pixels()[0]);
-    assert!(pixel.hits.is_finite() && pixel.variance > 0.0, "{pixel:?}");
+    assert!(pixel.hits(64).is_finite() && pixel.variance > 0.0, "{pixel:?}");
 }
 
 #[test]

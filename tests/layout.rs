@@ -112,7 +112,7 @@ fn general_kernel() -> String {
 
 #[test]
 fn mirrors_have_nagas_layout() {
-    let module = validate(&general_kernel()).expect("a valid kernel");
+    let (module, _) = validate(&general_kernel()).expect("a valid kernel");
     for mirror in mirrors() {
         compare(&module, &mirror).expect("the same layout");
     }
@@ -139,7 +139,7 @@ fn a_wrong_layout_is_rejected() {
 
 #[test]
 fn constants_are_the_kernels() {
-    let module = validate(&general_kernel()).expect("a valid kernel");
+    let (module, _) = validate(&general_kernel()).expect("a valid kernel");
     let constants = [
         ("SPHERE_CAPACITY", u32::try_from(SPHERE_CAPACITY).expect("a small number")),
         ("LEDGER_RECORDS", u32::try_from(layout::LEDGER_RECORDS).expect("a small number")),

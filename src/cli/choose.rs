@@ -8,6 +8,10 @@ use crate::scene::Scene;
 use crate::tracer::{Description, TraceError, Tracer};
 use std::num::NonZeroUsize;
 
+/// What to do where there is no device.
+pub(super) const INSTALL_DRIVER: &str = "install a graphics driver (on Debian and Ubuntu \
+                                         mesa-vulkan-drivers has one in software)";
+
 /// A device that was found to open.
 pub(super) enum Chosen {
     Adapter(Box<Adapter>),
@@ -57,10 +61,9 @@ pub(super) fn choose(
         }
         DeviceChoice::Gpu => match first_that_opens(adapters()) {
             Some(adapter) => Ok(Chosen::of(adapter)),
-            None => refuse(
-                "no Vulkan, Metal or DX12 device here; install a graphics driver (on Debian and \
-                 Ubuntu mesa-vulkan-drivers has one in software), or use --device cpu",
-            ),
+            None => refuse(format_args!(
+                "no Vulkan, Metal or DX12 device here; {INSTALL_DRIVER}, or use --device cpu"
+            )),
         },
         DeviceChoice::Named(name) => named(name),
     }

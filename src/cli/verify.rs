@@ -31,10 +31,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     }
     let chosen = choose::choose(&common.device, common.threads)?;
     let Some(device) = chosen.adapter() else {
-        return refuse(
-            "verify compares a device with the CPU twin, and there is no device here; install a \
-             graphics driver (on Debian and Ubuntu mesa-vulkan-drivers has one in software)",
-        );
+        return refuse(format_args!(
+            "verify compares a device with the CPU twin, and there is no device here; {}",
+            choose::INSTALL_DRIVER
+        ));
     };
     memory::check(scene.size(), 3 * memory::needed(scene.size(), true))?;
     let other_seed = scene.settings().with_seed(scene.settings().seed().wrapping_add(1));

@@ -1,7 +1,7 @@
 //! Whether two films show the same picture: z-tests over tiles and over the image for
 //! films of independent samples, and the bias between films of the same samples.
 
-use super::pixel::estimate;
+use super::pixel::{effective_hits, estimate};
 use crate::film::{Film, sums};
 use statrs::function::erf::{erfc, erfc_inv};
 
@@ -72,7 +72,7 @@ impl Group {
     }
 
     fn hits(&self) -> f64 {
-        if self.squares > 0.0 { self.sum * (self.sum / self.squares) } else { 0.0 }
+        effective_hits(self.sum, self.squares)
     }
 }
 
@@ -160,7 +160,7 @@ fn tiles(film: &Film) -> Vec<Group> {
     for (i, words) in film.pixels().iter().enumerate() {
         let pixel = estimate(film, words);
         let sum = pixel.luminance * n;
-        let squares = if pixel.hits > 0.0 { sum * (sum / pixel.hits) } else { 0.0 };
+        let squares = pixel.mean_square * n;
         let group = Group { mean: pixel.luminance, variance: pixel.variance / n, sum, squares };
         tiles[i / width / TILE * columns + i % width / TILE].add(&group);
     }

@@ -11,9 +11,8 @@ pub struct PixelEstimate {
     pub luminance: f64,
     /// Variance of one sample's luminance (unbiased, N - 1); NaN with fewer than two samples.
     pub variance: f64,
-    /// Effective number of contributing samples, (ΣY)²/ΣY² (Kish 1965): the number of
-    /// hits where all hits are alike.
-    pub hits: f64,
+    /// Mean of the squared luminance, with what truncation may hide of it.
+    pub mean_square: f64,
 }
 
 impl PixelEstimate {
@@ -24,11 +23,25 @@ impl PixelEstimate {
         (self.variance / samples as f64).sqrt()
     }
 
+    /// Effective number of the `samples` that contributed.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "at most 2^32 samples")]
+    pub fn hits(&self, samples: u64) -> f64 {
+        let n = samples as f64;
+        effective_hits(self.luminance * n, self.mean_square * n)
+    }
+
     /// Whether no sample has contributed yet, so that the error is unproven, not zero.
     #[must_use]
     pub fn is_unproven(&self) -> bool {
-        self.hits == 0.0
+        self.luminance == 0.0
     }
+}
+
+/// Effective number of contributing samples, (ΣY)²/ΣY² (Kish 1965): the number of hits
+/// where all hits are alike.
+pub(super) fn effective_hits(sum: f64, squares: f64) -> f64 {
+    if squares > 0.0 { sum * (sum / squares) } else { 0.0 }
 }
 
 /// Below this many film steps a pixel's mean is coarse: what truncation hides is no
@@ -48,12 +61,11 @@ pub fn estimate(film: &Film, words: &PixelWords) -> PixelEstimate {
         [r, g, b].iter().zip(LUMINANCE_WEIGHTS).map(|(&sum, w)| sum * u128::from(w)).sum();
     let mean = weighted as f64 / 65_536.0 / n;
     let hidden = hidden(mean);
-    let mean_square = squares as f64 * 4_294_967_296.0 / n + hidden;
     PixelEstimate {
         rgb: [r, g, b].map(|sum| sum as f64 * step / n),
         luminance: mean * step,
         variance: (variance(samples, weighted, squares) + hidden) * step * step,
-        hits: if weighted == 0 { 0.0 } else { n * mean * (mean / mean_square) },
+        mean_square: (squares as f64 * 4_294_967_296.0 / n + hidden) * step * step,
     }
 }
 

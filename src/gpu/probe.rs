@@ -3,7 +3,7 @@
 use super::bands::read_buffer;
 use super::device::Gpu;
 use crate::film::{PixelWords, WORDS};
-use crate::kernel::{layout, probe_source};
+use crate::kernel::{layout, probe_source, validate};
 use crate::tracer::TraceError;
 use wgpu::util::DeviceExt;
 
@@ -121,13 +121,7 @@ impl<'gpu> Probe<'gpu> {
 
 /// The bindings that an entry point reaches, from naga.
 fn bindings_of(entry: &str) -> Vec<u32> {
-    let module = naga::front::wgsl::parse_str(&probe_source()).expect("compiled before");
-    let info = naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .expect("compiled before");
+    let (module, info) = validate(&probe_source()).expect("compiled before");
     let index = module
         .entry_points
         .iter()

@@ -176,14 +176,14 @@ pub fn probe_source() -> String {
 ///
 /// # Errors
 /// naga's message, with the place in the source.
-pub fn validate(source: &str) -> Result<naga::Module, String> {
+pub fn validate(source: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), String> {
     let module =
         naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
-    naga::valid::Validator::new(
+    let info = naga::valid::Validator::new(
         naga::valid::ValidationFlags::all(),
         naga::valid::Capabilities::empty(),
     )
     .validate(&module)
     .map_err(|error| error.emit_to_string(source))?;
-    Ok(module)
+    Ok((module, info))
 }
