@@ -1,7 +1,7 @@
 //! A proven bound on one sample, from which the film takes its scale.
 
 use crate::film::SampleScale;
-use crate::scene::{Estimator, Invalid, Scene, Surface};
+use crate::scene::{Invalid, Scene, Surface};
 
 /// Room for the rounding of the kernel's `f32` products: 16 roundings per scattering
 /// (the norms of mirror and frame, the cosine, albedo and throughput).
@@ -60,9 +60,7 @@ fn brightest(scene: &Scene) -> f64 {
 
 fn largest_weight(scene: &Scene) -> f64 {
     let weights = scene.spheres().iter().filter_map(|sphere| match sphere.surface() {
-        Surface::Diffuse(albedo) => match scene.settings().estimator() {
-            Estimator::Implicit => Some(2.0 * albedo.rgb().max_element()),
-        },
+        Surface::Diffuse(albedo) => Some(2.0 * albedo.rgb().max_element()),
         _ => None,
     });
     weights.fold(1.0, f64::max)

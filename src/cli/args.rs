@@ -56,7 +56,7 @@ pub(super) struct CommonArgs {
     /// Seed of the random numbers; default: the scene's, or 0.
     #[arg(long, value_name = "S")]
     pub seed: Option<u32>,
-    /// Estimator; this version has "implicit".
+    /// Estimator: implicit, cosine, explicit or mis; default: the scene's, or implicit.
     #[arg(long, value_name = "E", value_parser = parse_estimator)]
     pub estimator: Option<Estimator>,
     /// Most scatterings of one path; default: the scene's, or 2.

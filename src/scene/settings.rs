@@ -9,15 +9,35 @@ pub enum Estimator {
     /// ones, light counted only where a path hits it by itself.
     #[default]
     Implicit,
+    /// As `Implicit`, with cosine-weighted directions at diffuse surfaces.
+    Cosine,
+    /// Next-event estimation: lights are sampled by solid angle at diffuse surfaces; light
+    /// that a path hits counts straight from the camera and from glossy surfaces.
+    Explicit,
+    /// Lights and the BRDF are sampled at every surface and combined with the balance
+    /// heuristic (Veach & Guibas, SIGGRAPH 1995, eq. 14).
+    Mis,
 }
 
 impl Estimator {
+    /// All of them, the source's first.
+    pub const ALL: [Self; 4] = [Self::Implicit, Self::Cosine, Self::Explicit, Self::Mis];
+
     /// The name used in scene files, on the command line and in film headers.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Implicit => "implicit",
+            Self::Cosine => "cosine",
+            Self::Explicit => "explicit",
+            Self::Mis => "mis",
         }
+    }
+
+    /// Whether lights are sampled where a path scatters.
+    #[must_use]
+    pub fn samples_lights(self) -> bool {
+        matches!(self, Self::Explicit | Self::Mis)
     }
 }
 
@@ -25,10 +45,8 @@ impl std::str::FromStr for Estimator {
     type Err = Invalid;
 
     fn from_str(name: &str) -> Result<Self, Invalid> {
-        match name {
-            "implicit" => Ok(Self::Implicit),
-            _ => refuse("an estimator; this version has \"implicit\""),
-        }
+        let found = Self::ALL.into_iter().find(|estimator| estimator.name() == name);
+        found.map_or_else(|| refuse("\"implicit\", \"cosine\", \"explicit\" or \"mis\""), Ok)
     }
 }
 

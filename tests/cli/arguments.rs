@@ -43,7 +43,7 @@ fn mistakes_in_arguments_are_refused() {
         ("render scene.toml --seed=-1", "0..=4294967295"),
         ("render scene.toml --seed 4294967296", "0..=4294967295"),
         ("render scene.toml --bounces 65", "from 0 to 64"),
-        ("render scene.toml --estimator magic", "expected an estimator"),
+        ("render scene.toml --estimator magic", "expected \"implicit\", \"cosine\""),
         ("render scene.toml --samples 7..5", "the range is empty"),
         ("render scene.toml --samples 5", "such as 0..256"),
         ("render scene.toml --samples 0..4294967297", "at most 4294967296 samples"),

@@ -14,9 +14,6 @@ const CAMERA_KEYS: &[&str] = &["position", "look_at", "up", "vertical_fov"];
 const IMAGE_KEYS: &[&str] = &["width", "height"];
 const RENDER_KEYS: &[&str] = &["spp", "bounces", "estimator", "seed"];
 
-/// Estimators of later versions, which deserve more than "unknown".
-const PLANNED_ESTIMATORS: &[&str] = &["cosine", "explicit", "mis", "auto"];
-
 /// The whole scene; `None` if a part of it could not be read. A scene may come back
 /// although there are mistakes in the log.
 pub(super) fn scene(root: &DeTable<'_>, log: &mut Log) -> Option<Scene> {
@@ -149,15 +146,13 @@ fn render(table: &Table<'_>, log: &mut Log) -> RenderSettings {
 
 fn estimator(field: &Field<'_>, log: &mut Log) -> Option<Estimator> {
     let name = field.text(log)?;
-    if PLANNED_ESTIMATORS.contains(&name) {
-        log.push(
-            field
-                .wrong("\"implicit\", the only estimator of this version")
-                .label(format!("\"{name}\" is planned for a later version")),
-        );
+    let parsed = name.parse::<Estimator>();
+    if let (Err(allowed), "auto") = (&parsed, name) {
+        // What the pilot chooses depends on the device, so a scene cannot ask for it.
+        log.push(field.wrong(&allowed.0).label("the command line takes --estimator auto"));
         return None;
     }
-    field.accept(name.parse(), log)
+    field.accept(parsed, log)
 }
 
 /// A `u32` for the constructors to judge: what does not fit becomes [`u32::MAX`],
