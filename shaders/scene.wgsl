@@ -4,6 +4,7 @@
 // power of two. Radiance is in the scene's own unit.
 
 const SPHERE_CAPACITY: u32 = 512u;
+const LIGHT_VECTORS: u32 = SPHERE_CAPACITY / 4u;
 const NO_SPHERE: u32 = 0xffffffffu;
 
 const KIND_EMITTER: u32 = 0u;
@@ -44,6 +45,10 @@ struct Scene {
     // Bit pattern of the proven bound on one sample.
     bound_bits: u32,
     sphere_count: u32,
+    light_count: u32,
+    // Places of the emitters in `spheres`, four to a vector: an array in a uniform
+    // buffer has a stride of 16 bytes.
+    lights: array<vec4<u32>, LIGHT_VECTORS>,
     spheres: array<Sphere, SPHERE_CAPACITY>,
 }
 

@@ -3,9 +3,13 @@
 //! is the reference that devices are verified against, and renders where there is no
 //! Vulkan at all.
 
+mod blind;
+mod connected;
 mod interior;
+mod light;
 pub mod material;
 mod nearest;
+mod pick;
 pub mod rng;
 pub mod sampling;
 mod scene;

@@ -28,3 +28,18 @@ pub(super) fn nearest(scene: &PreparedScene, ray: &Ray, leaving: Option<usize>) 
     }
     (best.distance < MISS).then_some(best)
 }
+
+/// Whether a sphere other than `light` stands before `distance`.
+pub(super) fn occluded(
+    scene: &PreparedScene,
+    ray: &Ray,
+    leaving: usize,
+    light: usize,
+    distance: f64,
+) -> bool {
+    let mut others = scene.spheres.iter().enumerate().filter(|&(i, _)| i != light);
+    others.any(|(i, sphere)| {
+        let q = factored(ray, sphere.center, sphere.radius);
+        distance_to(q, sphere, leaving == i) < distance
+    })
+}

@@ -11,6 +11,20 @@ pub fn polar_hemisphere(u: f64) -> DVec2 {
     DVec2::new(((1.0 - u) * (1.0 + u)).sqrt(), u)
 }
 
+/// (sine, cosine) of the angle from the axis, p = cosθ/π: sin²θ is uniform in [0, 1).
+#[must_use]
+pub fn polar_cosine(u: f64) -> DVec2 {
+    DVec2::new(u.sqrt(), (1.0 - u).sqrt())
+}
+
+/// (sine, cosine) of the angle α from the axis of a cone, uniform over its solid angle:
+/// 1 − cosα is uniform in [0, `height`), `height` = 1 − cosine of the half angle.
+#[must_use]
+pub fn polar_cone(u: f64, height: f64) -> DVec2 {
+    let t = u * height;
+    DVec2::new((t * (2.0 - t)).sqrt(), 1.0 - t)
+}
+
 /// (sine, cosine) of the angle α from the axis of a Phong lobe, p = (n+1)cosⁿα/2π:
 /// cosα = (1−u)^(1/(n+1)), computed from t = 1 − cosα and sinα = √(t(2−t)), which keep
 /// their digits however large n is.

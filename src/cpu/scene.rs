@@ -2,7 +2,7 @@
 //! for laid out for it. It shares no packing with the kernel, so that a mistake in
 //! `src/kernel` cannot hide in both.
 
-use crate::scene::{Scene, Surface};
+use crate::scene::{Estimator, Scene, Surface};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
 
@@ -11,9 +11,12 @@ use glam::DVec3;
 pub struct PreparedScene {
     pub(super) camera: Pinhole,
     pub(super) bounces: u32,
+    pub(super) estimator: Estimator,
     pub(super) seed: u32,
     /// In the order of the scene file.
     pub(super) spheres: Vec<PreparedSphere>,
+    /// Places of the emitters among them.
+    pub(super) lights: Vec<usize>,
 }
 
 /// The camera: `right` and `up` reach from the picture's centre to its edges on the
@@ -47,6 +50,10 @@ impl PreparedScene {
         Self {
             camera: Pinhole::of(scene),
             bounces: scene.settings().bounces(),
+            estimator: scene.settings().estimator(),
+            lights: (0..scene.spheres().len())
+                .filter(|&i| matches!(scene.spheres()[i].surface(), Surface::Emitter(_)))
+                .collect(),
             seed: scene.settings().seed(),
             spheres: sides
                 .map(|(sphere, &inside)| PreparedSphere {

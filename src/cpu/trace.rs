@@ -1,30 +1,52 @@
-//! One path: from the camera to a light, to nowhere, or to its last bounce, as in
+//! What every path needs: where it starts, what it hits, how it goes on; as in
 //! `shaders/trace.wgsl`.
 
 use super::interior::facing_normal;
-use super::material::{scatter_diffuse, scatter_glossy};
-use super::nearest::{Hit, nearest};
+use super::material::{Scattering, scatter_cosine, scatter_diffuse, scatter_glossy};
+use super::nearest::Hit;
 use super::rng::{SampleKey, random_bits, unit_floats};
 use super::scene::{Pinhole, PreparedScene, PreparedSphere};
 use super::sphere::Ray;
-use crate::scene::Surface;
+use super::{blind, connected};
+use crate::scene::{Albedo, Estimator, Surface};
 use glam::{DVec2, DVec3};
 
 /// A point that was hit.
-struct SurfacePoint {
-    position: DVec3,
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfacePoint {
+    pub(super) position: DVec3,
     /// Unit normal on the side that the ray came from.
-    normal: DVec3,
+    pub(super) normal: DVec3,
 }
 
 /// The point is put back onto the surface along the normal, which takes off most of
 /// the rounding of the distance.
-fn surface_point(ray: &Ray, hit: Hit, sphere: &PreparedSphere) -> SurfacePoint {
+pub(super) fn surface_point(ray: &Ray, hit: Hit, sphere: &PreparedSphere) -> SurfacePoint {
     let reached = ray.origin + hit.distance * ray.direction;
     let outward = (reached - sphere.center).normalize();
     SurfacePoint {
         position: sphere.center + sphere.radius * outward,
         normal: facing_normal(outward, sphere),
+    }
+}
+
+/// Scatters at a surface that does not emit; the albedo beside it.
+pub(super) fn scatter(
+    estimator: Estimator,
+    surface: Surface,
+    normal: DVec3,
+    incoming: DVec3,
+    u: DVec2,
+) -> (Albedo, Scattering) {
+    match surface {
+        Surface::Emitter(_) => unreachable!("an emitter ends the path"),
+        Surface::Diffuse(albedo) if estimator == Estimator::Implicit => {
+            (albedo, scatter_diffuse(normal, u))
+        }
+        Surface::Diffuse(albedo) => (albedo, scatter_cosine(normal, u)),
+        Surface::Glossy(albedo, exponent) => {
+            (albedo, scatter_glossy(normal, incoming, exponent.get(), u))
+        }
     }
 }
 
@@ -40,35 +62,9 @@ fn camera_ray(camera: &Pinhole, pixel: u32, u: DVec2) -> Ray {
 /// The radiance that one sample brings back, whole: not rounded to `f32`.
 #[must_use]
 pub fn trace(scene: &PreparedScene, key: SampleKey) -> DVec3 {
-    let random = |block| unit_floats(random_bits(key, block, scene.seed));
-    let mut ray = camera_ray(&scene.camera, key.pixel, random(0));
-    let mut throughput = DVec3::ONE;
-    let mut leaving = None;
-    for bounce in 0..=scene.bounces {
-        let Some(hit) = nearest(scene, &ray, leaving) else { break };
-        let sphere = &scene.spheres[hit.sphere];
-        if let Surface::Emitter(radiance) = sphere.surface {
-            return throughput * radiance.rgb();
-        }
-        if bounce == scene.bounces {
-            break;
-        }
-        let point = surface_point(&ray, hit, sphere);
-        let u = random(bounce + 1);
-        let (albedo, scattering) = match sphere.surface {
-            Surface::Emitter(_) => unreachable!("an emitter ends the path"),
-            Surface::Diffuse(albedo) => (albedo, scatter_diffuse(point.normal, u)),
-            Surface::Glossy(albedo, exponent) => {
-                let lobe = scatter_glossy(point.normal, ray.direction, exponent.get(), u);
-                (albedo, lobe)
-            }
-        };
-        if scattering.weight == 0.0 {
-            break;
-        }
-        throughput *= scattering.weight * albedo.rgb();
-        ray = Ray { origin: point.position, direction: scattering.direction };
-        leaving = Some(hit.sphere);
+    let ray = camera_ray(&scene.camera, key.pixel, unit_floats(random_bits(key, 0, scene.seed)));
+    match scene.estimator {
+        Estimator::Implicit | Estimator::Cosine => blind::trace(scene, key, ray),
+        Estimator::Explicit | Estimator::Mis => connected::trace(scene, key, ray),
     }
-    DVec3::ZERO
 }

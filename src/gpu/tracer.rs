@@ -4,9 +4,8 @@ use super::bands::{self, Band};
 use super::device::Gpu;
 use super::pace::Pace;
 use crate::bound::sample_scale;
-use crate::effects::Effects;
 use crate::film::{Film, FilmError, SampleRanges, SampleScale};
-use crate::kernel::{self, Kernel, Nearest, SPHERE_CAPACITY, Tile, layout};
+use crate::kernel::{self, Kernel, SPHERE_CAPACITY, Tile, layout};
 use crate::scene::{ImageSize, MAX_BOUNCES, Scene};
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
 use crate::viewpoint::Viewpoint;
@@ -47,12 +46,7 @@ impl GpuTracer {
         let scale = sample_scale(scene);
         let packed = kernel::pack(scene, &viewpoint, scale)
             .map_err(|error| TraceError::Device(error.to_string()))?;
-        let kernel = Kernel {
-            size: scene.size(),
-            bounces: scene.settings().bounces(),
-            effects: Effects::of(scene, &viewpoint),
-            nearest: Nearest::of(&packed.forms),
-        };
+        let kernel = Kernel::of(scene, &viewpoint, &packed);
         Self::with_kernel(scene, gpu, &packed.scene, &kernel.wgsl())
     }
 

@@ -1,8 +1,9 @@
 //! Composes the kernel's WGSL from the fragments in `shaders/`, by concatenation alone.
 
-use super::pack::Form;
+use super::pack::{Form, Packed};
 use crate::effects::Effects;
-use crate::scene::ImageSize;
+use crate::scene::{Estimator, ImageSize, Scene};
+use crate::viewpoint::Viewpoint;
 
 /// Scenes of up to this many spheres get straight-line code instead of a loop over
 /// the spheres, which is faster (BENCHMARKS.md, "Speed of the classic scene").
@@ -63,6 +64,25 @@ impl Nearest {
     }
 }
 
+/// The lights that an estimator samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lights {
+    /// Place in the uniform buffer of the only light there is.
+    pub only: Option<u32>,
+    /// Whether one of them is in anchored form.
+    pub huge: bool,
+}
+
+impl Lights {
+    /// The lights of a packed scene.
+    #[must_use]
+    pub fn of(packed: &Packed) -> Self {
+        let places = packed.light_places();
+        let only = if let [place] = places[..] { Some(place) } else { None };
+        Self { only, huge: places.iter().any(|&place| place >= packed.scene.factored_count) }
+    }
+}
+
 /// What one kernel is composed for. It does not depend on which samples are traced.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Kernel {
@@ -70,13 +90,30 @@ pub struct Kernel {
     pub size: ImageSize,
     /// Most scatterings of one path.
     pub bounces: u32,
+    /// How paths are built.
+    pub estimator: Estimator,
     /// The effects that it simulates.
     pub effects: Effects,
     /// How it searches for the nearest hit.
     pub nearest: Nearest,
+    /// The lights, for the estimators that sample them.
+    pub lights: Lights,
 }
 
 impl Kernel {
+    /// The kernel that a packed scene calls for.
+    #[must_use]
+    pub fn of(scene: &Scene, viewpoint: &Viewpoint, packed: &Packed) -> Self {
+        Self {
+            size: scene.size(),
+            bounces: scene.settings().bounces(),
+            estimator: scene.settings().estimator(),
+            effects: Effects::of(scene, viewpoint),
+            nearest: Nearest::of(&packed.forms),
+            lights: Lights::of(packed),
+        }
+    }
+
     /// The WGSL of the entry point `render`.
     #[must_use]
     pub fn wgsl(&self) -> String {
@@ -85,12 +122,35 @@ impl Kernel {
             "const TILE_WIDTH: u32 = {width}u;\nconst TILE_HEIGHT: u32 = {height}u;\n\
              const TILE_SAMPLES: u32 = {samples}u;\n"
         );
-        let parts = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
-        self.tracing() + &parts.join("\n")
+        let mut parts = self.tracing(self.diffuse());
+        if self.estimator.samples_lights() {
+            parts.extend(self.connecting());
+            parts.push(
+                match self.estimator {
+                    Estimator::Mis => fragment!("strategy_mis"),
+                    _ => fragment!("strategy_explicit"),
+                }
+                .to_owned(),
+            );
+            parts.push(fragment!("path_connected").to_owned());
+        } else {
+            parts.push(fragment!("path_blind").to_owned());
+        }
+        let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
+        parts.extend(last.map(str::to_owned));
+        parts.join("\n")
     }
 
-    /// Everything up to `trace`: what the renderer and the probe share.
-    fn tracing(&self) -> String {
+    /// How diffuse surfaces are sampled.
+    fn diffuse(&self) -> &'static str {
+        match self.estimator {
+            Estimator::Implicit => fragment!("diffuse_uniform"),
+            _ => fragment!("diffuse_cosine"),
+        }
+    }
+
+    /// What every path needs.
+    fn tracing(&self, diffuse: &str) -> Vec<String> {
         let side =
             if self.effects.interior { fragment!("interior") } else { fragment!("exterior") };
         let scatter = match (self.effects.diffuse, self.effects.glossy) {
@@ -115,29 +175,89 @@ impl Kernel {
             &self.nearest.wgsl(),
             fragment!("sampling"),
             fragment!("material"),
+            diffuse,
             scatter,
             fragment!("trace"),
-            "",
         ]
-        .join("\n")
+        .map(str::to_owned)
+        .to_vec()
+    }
+
+    /// What a path needs besides where it samples lights.
+    fn connecting(&self) -> Vec<String> {
+        // Glossy surfaces are no place for `explicit` to sample lights.
+        let glossy = self.effects.glossy && self.estimator == Estimator::Mis;
+        let evaluate = match (self.effects.diffuse, glossy) {
+            (true, true) => fragment!("evaluate_both"),
+            (false, true) => fragment!("evaluate_glossy"),
+            (_, false) => fragment!("evaluate_diffuse"),
+        };
+        let side = if self.effects.interior {
+            fragment!("light_interior")
+        } else {
+            fragment!("light_exterior")
+        };
+        let form =
+            if self.lights.huge { fragment!("light_both") } else { fragment!("light_factored") };
+        let pick = match self.lights.only {
+            Some(place) => format!("const LIGHT: u32 = {place}u;\n\n") + fragment!("pick_one"),
+            None => fragment!("pick_many").to_owned(),
+        };
+        let occluded = match &self.nearest {
+            Nearest::Loop => fragment!("occluded_loop").to_owned(),
+            Nearest::Unrolled(forms) => unrolled_occluded(forms, self.lights.only),
+        };
+        [fragment!("evaluate"), evaluate, fragment!("light"), form, side, &pick, &occluded]
+            .map(str::to_owned)
+            .to_vec()
     }
 }
 
-/// Straight-line search. The shapes are loaded once a path and not once a segment, which
-/// matters where a driver fetches uniforms lane by lane.
-/// Factored spheres come first in the uniform buffer, each group in the order of the
-/// file, and so each sphere's place follows from the forms.
-fn unrolled(forms: &[Form]) -> String {
+/// Places of the spheres in the uniform buffer, with their forms, in the order of the
+/// scene file: factored spheres come first there, each group in the order of the file.
+fn places(forms: &[Form]) -> Vec<(&'static str, u32)> {
     let mut factored = 0..;
-    let mut anchored = forms.iter().filter(|&&form| form == Form::Factored).count()..;
-    let places: Vec<(&str, usize)> = forms
+    let mut anchored = (0..).skip(forms.iter().filter(|&&form| form == Form::Factored).count());
+    forms
         .iter()
         .filter_map(|form| match form {
             Form::Factored => Some(("factored", factored.next()?)),
             Form::Anchored => Some(("anchored", anchored.next()?)),
         })
+        .collect()
+}
+
+/// Whether anything stands before a light, in straight-line code; where there is only one
+/// light, it is not asked.
+fn unrolled_occluded(forms: &[Form], only: Option<u32>) -> String {
+    let asked = places(forms).into_iter().filter(|&(_, i)| Some(i) != only);
+    let steps: String = asked
+        .map(|(form, i)| {
+            let arguments = match form {
+                "factored" => format!("shape_{i}.position, shape_{i}.size"),
+                _ => format!("shape_{i}.position, shape_{i}.offset, shape_{i}.size"),
+            };
+            let distance = format!("distance_to({form}(ray, {arguments}), {i}u, leaving)");
+            match only {
+                Some(_) => format!("    first = min(first, {distance});\n"),
+                None => {
+                    format!("    first = min(first, select({distance}, MISS, light == {i}u));\n")
+                }
+            }
+        })
         .collect();
-    let lines = |line: &dyn Fn(&str, usize) -> String| -> String {
+    format!(
+        "// Whether a sphere other than `light` stands before `distance`.\n\
+         fn occluded(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool {{\n    \
+         var first = MISS;\n{steps}    return first < distance;\n}}\n"
+    )
+}
+
+/// Straight-line search. The shapes are loaded once a path and not once a segment, which
+/// matters where a driver fetches uniforms lane by lane.
+fn unrolled(forms: &[Form]) -> String {
+    let places = places(forms);
+    let lines = |line: &dyn Fn(&str, u32) -> String| -> String {
         places.iter().map(|&(form, i)| line(form, i)).collect()
     };
     let variables = lines(&|_, i| format!("var<private> shape_{i}: Shape;\n"));
@@ -166,10 +286,21 @@ pub fn probe_source() -> String {
     let kernel = Kernel {
         size: ImageSize::new(512, 512).expect("a picture"),
         bounces: 2,
+        estimator: Estimator::Mis,
         effects: Effects::ALL,
         nearest: Nearest::Loop,
+        lights: Lights { only: None, huge: true },
     };
-    kernel.tracing() + &[fragment!("film"), fragment!("probe")].join("\n")
+    let mut parts = kernel.tracing(fragment!("diffuse_uniform"));
+    parts.extend(kernel.connecting());
+    let last = [
+        fragment!("strategy_mis"),
+        fragment!("path_connected"),
+        fragment!("film"),
+        fragment!("probe"),
+    ];
+    parts.extend(last.map(str::to_owned));
+    parts.join("\n")
 }
 
 /// Parses and validates WGSL as wgpu would, with the features that candor asks for.

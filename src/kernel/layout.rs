@@ -67,8 +67,12 @@ pub struct Scene {
     pub bound_bits: u32,
     /// All spheres.
     pub sphere_count: u32,
+    /// Emitters among them.
+    pub light_count: u32,
     /// Implicit in WGSL.
-    pub padding: [u32; 3],
+    pub padding: [u32; 2],
+    /// Places of the emitters in `spheres`.
+    pub lights: [u32; SPHERE_CAPACITY],
     /// Factored ones first, each group in the order of the scene file.
     pub spheres: [Sphere; SPHERE_CAPACITY],
 }

@@ -4,6 +4,6 @@ mod compose;
 pub mod layout;
 mod pack;
 
-pub use compose::{Kernel, Nearest, Tile, UNROLLED_SPHERES, probe_source, validate};
+pub use compose::{Kernel, Lights, Nearest, Tile, UNROLLED_SPHERES, probe_source, validate};
 pub use layout::SPHERE_CAPACITY;
 pub use pack::{Form, KernelUnits, Packed, TooManySpheres, pack};

@@ -65,6 +65,14 @@ pub struct Packed {
     pub forms: Vec<Form>,
 }
 
+impl Packed {
+    /// Places of the lights in the uniform buffer.
+    #[must_use]
+    pub fn light_places(&self) -> &[u32] {
+        &self.scene.lights[..self.scene.light_count as usize]
+    }
+}
+
 /// Packs a scene for the device.
 ///
 /// # Errors
@@ -91,6 +99,7 @@ pub fn pack(
         let inside = viewpoint.inside()[index];
         packed.spheres[place] = pack_sphere(&spheres[index], index, forms[index], inside, &units);
     }
+    pack_lights(&mut packed, spheres.len());
     packed.factored_count = word(of_form(Form::Factored).count());
     packed.sphere_count = word(spheres.len());
     packed.seed = scene.settings().seed();
@@ -103,6 +112,14 @@ fn form_of(sphere: &Sphere, scene: &Scene, viewpoint: &Viewpoint) -> Form {
     let distance = scene.camera().position().distance(sphere.center());
     let small = sphere.radius() <= viewpoint.extent() || distance > SMALL_FROM * sphere.radius();
     if small { Form::Factored } else { Form::Anchored }
+}
+
+/// Lists the places of the emitters among the packed spheres.
+fn pack_lights(packed: &mut layout::Scene, spheres: usize) {
+    let emits = |place: &usize| packed.spheres[*place].kind == layout::KIND_EMITTER;
+    let places: Vec<u32> = (0..spheres).filter(emits).map(word).collect();
+    packed.lights[..places.len()].copy_from_slice(&places);
+    packed.light_count = word(places.len());
 }
 
 fn pack_camera(packed: &mut layout::Scene, scene: &Scene, units: &KernelUnits) {

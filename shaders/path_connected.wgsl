@@ -1,0 +1,71 @@
+// One path that samples a light where it scatters (next-event estimation; Kajiya 1986,
+// section 4). A connection to a light uses up one scattering.
+
+// Whether a driver cut a loop short, other than that of `nearest`.
+var<private> unfinished: bool;
+
+// How a path left its last vertex.
+struct Departure {
+    point: SurfacePoint,
+    // Density of the direction, per steradian.
+    density: f32,
+    // Whether nothing but this direction could find the light that it hits.
+    alone: bool,
+}
+
+// The cone in which a light is sampled. From inside a light, where every direction meets
+// it, that is the half-space above the surface.
+fn cone_of(light: u32, point: SurfacePoint) -> Cone {
+    return seen_cone(outer_cone(light, point.position), light, point.normal);
+}
+
+// What one sampled light sends over this vertex, per unit of albedo.
+fn connect(point: SurfacePoint, sphere: u32, incoming: vec3<f32>, u: vec2<f32>,
+           key: SampleKey, bounce: u32) -> vec3<f32> {
+    let pick = pick_light(point, key, bounce);
+    let cone = cone_of(pick.light, point);
+    let direction = around(cone.axis, polar_cone(u.x, cone.height), u.y);
+    let worth = evaluate(sphere, point.normal, incoming, direction);
+    let share = worth.weight * share_of_sampled(worth.density * TAU * cone.height / pick.chance);
+    let ray = Ray(point.position, direction);
+    let distance = seen_distance(light_quadratic(pick.light, ray), pick.light);
+    let blocked = occluded(ray, sphere, pick.light, distance);
+    return select(share, 0.0, blocked || !samples_light_at(sphere)) * scene.spheres[pick.light].color;
+}
+
+fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
+    load_shapes();
+    var ray = camera_ray(pixel, unit_floats(random_bits(key, 0u)));
+    var radiance = vec3<f32>(0.0);
+    var throughput = vec3<f32>(1.0);
+    var leaving = NO_SPHERE;
+    var departure = Departure(SurfacePoint(ray.origin, ray.direction), 0.0, true);
+    for (var bounce = 0u; bounce <= BOUNCES; bounce++) {
+        let hit = nearest(ray, leaving);
+        if hit.sphere >= UNFINISHED {
+            return Sample(radiance, hit.sphere == NO_SPHERE && !unfinished);
+        }
+        let color = scene.spheres[hit.sphere].color;
+        if scene.spheres[hit.sphere].kind == KIND_EMITTER {
+            let share = share_of_hit(hit.sphere, departure);
+            return Sample(radiance + throughput * share * color, !unfinished);
+        }
+        if bounce == BOUNCES {
+            return Sample(radiance, !unfinished);
+        }
+        let point = surface_point(ray, hit);
+        let bits = random_bits(key, bounce + 1u);
+        let light_u = vec2<f32>(unit_float(bits.z), unit_float(bits.w));
+        throughput *= color;
+        radiance += throughput * connect(point, hit.sphere, ray.direction, light_u, key, bounce);
+        let scattering = scatter(hit.sphere, point.normal, ray.direction, unit_floats(bits));
+        departure = Departure(point, scattering.density, !samples_light_at(hit.sphere));
+        if scattering.weight == 0.0 || is_done(departure, bounce + 1u) {
+            return Sample(radiance, !unfinished);
+        }
+        throughput *= scattering.weight;
+        ray = Ray(point.position, scattering.direction);
+        leaving = hit.sphere;
+    }
+    return Sample(radiance, false);
+}

@@ -1,0 +1,23 @@
+// Light and BRDF sampling at every surface, combined with the balance heuristic (Veach &
+// Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
+// SIGGRAPH 1995, eq. 14). Both shares are written in the ratio x = p/q of the densities,
+// the BRDF's over the light's, so that neither can overflow.
+
+// f_r·cosθ/(p + q) over the albedo is weight·p/(p + q).
+fn share_of_sampled(x: f32) -> f32 {
+    return x / (1.0 + x);
+}
+
+fn samples_light_at(sphere: u32) -> bool {
+    return true;
+}
+
+fn is_done(departure: Departure, bounce: u32) -> bool {
+    return false;
+}
+
+fn share_of_hit(light: u32, departure: Departure) -> f32 {
+    let point = departure.point;
+    let x = departure.density * TAU * cone_of(light, point).height / chance_of(light, point);
+    return select(x / (1.0 + x), 1.0, departure.alone);
+}
