@@ -9,5 +9,5 @@ fn weight_diffuse(polar: vec2<f32>) -> f32 {
 }
 
 fn density_diffuse(polar: vec2<f32>) -> f32 {
-    return INVERSE_TAU;
+    return 1.0;
 }

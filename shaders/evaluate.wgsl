@@ -4,13 +4,13 @@
 struct Worth {
     // f_r·cosθ/p without the albedo.
     weight: f32,
-    // p, per steradian.
+    // 2π·p.
     density: f32,
 }
 
 // Lambertian surface under cosine-weighted directions: weight 1.
 fn evaluate_diffuse(normal: vec3<f32>, direction: vec3<f32>) -> Worth {
-    return Worth(1.0, max(dot(normal, direction), 0.0) * INVERSE_PI);
+    return Worth(1.0, 2.0 * max(dot(normal, direction), 0.0));
 }
 
 // Phong lobe: cosⁿα = exp(n·log(1 - t)) with t = 1 - cosα = |mirror - direction|²/2, as
@@ -24,7 +24,7 @@ fn evaluate_glossy(
     let off = mirror_direction(normal, incoming) - direction;
     let t = 0.5 * dot(off, off);
     let lobe = exp_minus(exponent * minus_log_complement(min(t, LARGEST_BELOW_ONE)));
-    let density = (exponent + 1.0) * INVERSE_TAU * lobe;
+    let density = (exponent + 1.0) * lobe;
     return Worth(weight_glossy(normal, direction), select(density, 0.0, t >= 1.0));
 }
 

@@ -5,13 +5,10 @@ struct Scattering {
     // f_r·cosθ/p without the albedo. A weight of zero ends the path; the sample still
     // counts.
     weight: f32,
-    // p, per steradian.
+    // 2π·p: the density over that of the uniform hemisphere, so that no factor of π
+    // enters the ratio of two densities.
     density: f32,
 }
-
-const TAU: f32 = 6.283185307179586;
-const INVERSE_PI: f32 = 0.31830988618379067;
-const INVERSE_TAU: f32 = 0.15915494309189534;
 
 fn mirror_direction(normal: vec3<f32>, incoming: vec3<f32>) -> vec3<f32> {
     return normalize(incoming - 2.0 * dot(incoming, normal) * normal);
@@ -26,5 +23,5 @@ fn weight_glossy(normal: vec3<f32>, direction: vec3<f32>) -> f32 {
 // Density of a direction drawn with the number u: cosⁿ⁺¹α = 1 - u, so
 // cosⁿα = (1 - u)/cosα, which is at most 1 (n = 0).
 fn density_drawn(polar: vec2<f32>, u: f32, exponent: f32) -> f32 {
-    return (exponent + 1.0) * INVERSE_TAU * min((1.0 - u) / max(polar.y, 1.0 - u), 1.0);
+    return (exponent + 1.0) * min((1.0 - u) / max(polar.y, 1.0 - u), 1.0);
 }

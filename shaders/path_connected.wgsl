@@ -7,7 +7,7 @@ var<private> unfinished: bool;
 // How a path left its last vertex.
 struct Departure {
     point: SurfacePoint,
-    // Density of the direction, per steradian.
+    // Density of the direction, times 2π.
     density: f32,
     // Whether nothing but this direction could find the light that it hits.
     alone: bool,
@@ -26,7 +26,7 @@ fn connect(point: SurfacePoint, sphere: u32, incoming: vec3<f32>, u: vec2<f32>,
     let cone = cone_of(pick.light, point);
     let direction = around(cone.axis, polar_cone(u.x, cone.height), u.y);
     let worth = evaluate(sphere, point.normal, incoming, direction);
-    let share = worth.weight * share_of_sampled(worth.density * TAU * cone.height / pick.chance);
+    let share = worth.weight * share_of_sampled(worth.density * cone.height / pick.chance);
     let ray = Ray(point.position, direction);
     let distance = seen_distance(light_quadratic(pick.light, ray), pick.light);
     let blocked = occluded(ray, sphere, pick.light, distance);

@@ -134,10 +134,13 @@ fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
         outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.factored_count);
         outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
         outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
-        outputs[4] = vec4<u32>(scene.sphere_count, 0u, 0u, 0u);
+        outputs[4] = vec4<u32>(scene.sphere_count, scene.light_count, 0u, 0u);
+        for (var i = 0u; i < LIGHT_VECTORS; i++) {
+            outputs[5u + i] = scene.lights[i];
+        }
     }
     let s = scene.spheres[id.x];
-    let at = 5u + 3u * id.x;
+    let at = 5u + LIGHT_VECTORS + 3u * id.x;
     outputs[at] = vec4<u32>(bitcast<vec3<u32>>(s.position), bitcast<u32>(s.size));
     outputs[at + 1u] = vec4<u32>(bitcast<vec3<u32>>(s.color), bitcast<u32>(s.exponent));
     outputs[at + 2u] = vec4<u32>(bitcast<u32>(s.offset), s.index, s.kind, s.inside);

@@ -18,6 +18,6 @@ fn is_done(departure: Departure, bounce: u32) -> bool {
 
 fn share_of_hit(light: u32, departure: Departure) -> f32 {
     let point = departure.point;
-    let x = departure.density * TAU * cone_of(light, point).height / chance_of(light, point);
+    let x = departure.density * cone_of(light, point).height / chance_of(light, point);
     return select(x / (1.0 + x), 1.0, departure.alone);
 }

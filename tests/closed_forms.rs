@@ -9,6 +9,7 @@ mod support {
 }
 
 use candor::cpu::CpuTracer;
+use candor::scene::Estimator;
 use std::f64::consts::{FRAC_PI_2, PI};
 use support::closed_form::{
     hemisphere_second_moment, integrating_sphere, lobe_above_horizon, lobe_albedo, lobe_at_light,
@@ -16,9 +17,28 @@ use support::closed_form::{
 };
 use support::closed_form_cases::check_closed_forms;
 
+fn check(estimator: Estimator) {
+    check_closed_forms(estimator, &|scene| Box::new(CpuTracer::new(scene, None).expect("threads")));
+}
+
 #[test]
-fn the_twin_agrees_with_closed_forms() {
-    check_closed_forms(&|scene| Box::new(CpuTracer::new(scene, None).expect("threads")));
+fn implicit_agrees_with_closed_forms() {
+    check(Estimator::Implicit);
+}
+
+#[test]
+fn cosine_agrees_with_closed_forms() {
+    check(Estimator::Cosine);
+}
+
+#[test]
+fn explicit_agrees_with_closed_forms() {
+    check(Estimator::Explicit);
+}
+
+#[test]
+fn mis_agrees_with_closed_forms() {
+    check(Estimator::Mis);
 }
 
 fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {

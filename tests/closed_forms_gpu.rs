@@ -10,11 +10,31 @@ mod support {
 }
 
 use candor::gpu::GpuTracer;
+use candor::scene::Estimator;
 use support::closed_form_cases::check_closed_forms;
 
-#[test]
-fn the_device_agrees_with_closed_forms() {
-    check_closed_forms(&|scene| {
+fn check(estimator: Estimator) {
+    check_closed_forms(estimator, &|scene| {
         Box::new(GpuTracer::new(scene, support::gpu::open()).expect("the device takes the scene"))
     });
+}
+
+#[test]
+fn implicit_agrees_with_closed_forms() {
+    check(Estimator::Implicit);
+}
+
+#[test]
+fn cosine_agrees_with_closed_forms() {
+    check(Estimator::Cosine);
+}
+
+#[test]
+fn explicit_agrees_with_closed_forms() {
+    check(Estimator::Explicit);
+}
+
+#[test]
+fn mis_agrees_with_closed_forms() {
+    check(Estimator::Mis);
 }

@@ -9,9 +9,9 @@ use bytemuck::Zeroable;
 use candor::effects::Effects;
 use candor::gpu::probe::{Probe, Row};
 use candor::kernel::{
-    Form, Kernel, Nearest, SPHERE_CAPACITY, Tile, layout, probe_source, validate,
+    Form, Kernel, Lights, Nearest, SPHERE_CAPACITY, Tile, layout, probe_source, validate,
 };
-use candor::scene::ImageSize;
+use candor::scene::{Estimator, ImageSize};
 use std::mem::offset_of;
 
 /// One struct as somebody lays it out.
@@ -59,7 +59,9 @@ fn mirrors() -> [Layout; 4] {
             up,
             bound_bits,
             sphere_count,
+            light_count,
             padding,
+            lights,
             spheres
         }),
         mirror!(Dispatch {
@@ -107,7 +109,15 @@ fn constant(module: &naga::Module, name: &str) -> Option<u32> {
 
 fn general_kernel() -> String {
     let size = ImageSize::new(8, 8).expect("a size");
-    Kernel { size, bounces: 2, effects: Effects::ALL, nearest: Nearest::Loop }.wgsl()
+    let kernel = Kernel {
+        size,
+        bounces: 2,
+        estimator: Estimator::Mis,
+        effects: Effects::ALL,
+        nearest: Nearest::Loop,
+        lights: Lights::Many { huge: true },
+    };
+    kernel.wgsl()
 }
 
 #[test]
@@ -123,7 +133,7 @@ fn a_wrong_layout_is_rejected() {
     // One row per struct: fields in another order, or of another type.
     let faults = [
         ("Sphere", "index: u32,\n    kind: u32,", "kind: u32,\n    index: u32,"),
-        ("Scene", "sphere_count: u32,\n    spheres", "sphere_count: vec4<u32>,\n    spheres"),
+        ("Scene", "lights: array<vec4<u32>, LIGHT_VECTORS>", "lights: array<vec4<u32>, 127u>"),
         ("Scene", "origin: vec3<f32>,\n    seed: u32,", "seed: u32,\n    origin: vec3<f32>,"),
         ("Dispatch", "row_start: u32,\n    row_end: u32,", "row_end: u32,\n    row_start: u32,"),
         ("Ledger", "array<u32, LEDGER_RECORDS * RECORD_WORDS>", "array<u32, 65>"),
@@ -176,8 +186,9 @@ fn echo_of(scene: &layout::Scene) -> Vec<Row> {
         row(scene.forward, scene.factored_count),
         row(scene.right, scene.film_shift.cast_unsigned()),
         row(scene.up, scene.bound_bits),
-        [scene.sphere_count, 0, 0, 0],
+        [scene.sphere_count, scene.light_count, 0, 0],
     ];
+    rows.extend(scene.lights.as_chunks().0);
     for s in &scene.spheres {
         rows.push(row(s.position, s.size.to_bits()));
         rows.push(row(s.color, s.exponent.to_bits()));
@@ -191,7 +202,8 @@ fn the_device_reads_every_field_as_it_was_written() {
     let gpu = support::gpu::open();
     let scene = scene_of_distinct_words();
     let probe = Probe::new(&gpu, &scene).expect("the probe compiles");
-    let rows = probe.run("probe_echo", &[], 5 + 3 * SPHERE_CAPACITY).expect("the device runs");
+    let count = 5 + SPHERE_CAPACITY / 4 + 3 * SPHERE_CAPACITY;
+    let rows = probe.run("probe_echo", &[], count).expect("the device runs");
     assert_eq!(rows, echo_of(&scene));
     // Two fields of one type exchanged, far from each other and side by side.
     let mut exchanged = scene;
@@ -215,6 +227,7 @@ fn every_composition_is_valid() {
     let sides = [1, 2, 3, 5, 64];
     let unrolled = [(0, 0), (1, 0), (0, 1), (3, 5), (16, 0), (0, 16), (9, 7)];
     let searches = unrolled.map(|(factored, anchored)| forms(factored, anchored));
+    let mut turn = 0;
     for (width, height) in sides.iter().flat_map(|&w| sides.map(|h| (w, h))) {
         let size = ImageSize::new(width, height).expect("a size");
         let tile = Tile::of(size);
@@ -224,7 +237,17 @@ fn every_composition_is_valid() {
                 let [diffuse, glossy, interior] = [1, 2, 4].map(|flag| flags & flag != 0);
                 let effects = Effects { diffuse, glossy, interior };
                 let nearest = nearest.clone();
-                let kernel = Kernel { size, bounces: flags * 9, effects, nearest };
+                // The estimators and kinds of lights take turns over the compositions.
+                let estimator = Estimator::ALL[turn % 4];
+                let huge = turn / 12 % 2 == 0;
+                let lights = match turn / 4 % 3 {
+                    0 => Lights::None,
+                    1 => Lights::One { place: 0, huge },
+                    _ => Lights::Many { huge },
+                };
+                turn += 1;
+                let bounces = flags * 9;
+                let kernel = Kernel { size, bounces, estimator, effects, nearest, lights };
                 if let Err(message) = validate(&kernel.wgsl()) {
                     panic!("{kernel:?}: {message}");
                 }

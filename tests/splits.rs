@@ -12,8 +12,8 @@ mod support {
 use candor::effects::Effects;
 use candor::estimate::compare;
 use candor::film::{Film, MAX_SAMPLE_INDEX};
-use candor::kernel::{Kernel, Nearest, Tile};
-use candor::scene::{ImageSize, Scene};
+use candor::kernel::{Kernel, Lights, Nearest, Tile};
+use candor::scene::{Estimator, ImageSize, Scene};
 use candor::tracer::Tracer;
 use std::ops::Range;
 use support::scenes::{classic, many, packed, room, size, with_seed};
@@ -101,19 +101,22 @@ fn tiles_do_not_change_a_bit() {
 /// instead of lines, and effects that are not called for.
 #[test]
 fn the_specialised_kernel_gives_the_general_ones_bits() {
-    for scene in [classic(size(48, 48)), room(1e5, true).with_size(size(48, 48))] {
+    let scenes = [classic(size(48, 48)), room(1e5, true).with_size(size(48, 48))];
+    for (scene, estimator) in scenes.iter().flat_map(|s| Estimator::ALL.map(|e| (s, e))) {
+        let settings = scene.settings().with_estimator(estimator);
+        let scene = scene.clone().with_settings(settings);
         let special = film(&mut on_device(&scene), &[0..16]);
-        for (effects, nearest) in
-            [(Effects::ALL, Nearest::Loop), (Effects::ALL, Nearest::Unrolled(packed(&scene).forms))]
-        {
+        for nearest in [Nearest::Loop, Nearest::Unrolled(packed(&scene).forms)] {
             let general = Kernel {
                 size: scene.size(),
                 bounces: scene.settings().bounces(),
-                effects,
+                estimator,
+                effects: Effects::ALL,
                 nearest,
+                lights: Lights::Many { huge: true },
             };
             let general = film(&mut with_kernel(&scene, &general.wgsl()), &[0..16]);
-            assert!(general == special, "{:?}", scene.size());
+            assert!(general == special, "{estimator:?} {:?}", scene.size());
         }
     }
 }

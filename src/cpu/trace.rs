@@ -63,8 +63,9 @@ fn camera_ray(camera: &Pinhole, pixel: u32, u: DVec2) -> Ray {
 #[must_use]
 pub fn trace(scene: &PreparedScene, key: SampleKey) -> DVec3 {
     let ray = camera_ray(&scene.camera, key.pixel, unit_floats(random_bits(key, 0, scene.seed)));
-    match scene.estimator {
-        Estimator::Implicit | Estimator::Cosine => blind::trace(scene, key, ray),
-        Estimator::Explicit | Estimator::Mis => connected::trace(scene, key, ray),
+    if scene.estimator.samples_lights() && !scene.lights.is_empty() {
+        connected::trace(scene, key, ray)
+    } else {
+        blind::trace(scene, key, ray)
     }
 }

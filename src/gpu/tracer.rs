@@ -13,10 +13,13 @@ use std::ops::Range;
 use std::time::Instant;
 use wgpu::util::DeviceExt;
 
-/// lavapipe leaves a loop without a word after 65,535 iterations, counted over all
-/// loops of an invocation group (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa). One sample, of
-/// the longest path among the most spheres, stays below.
-const _: () = assert!((MAX_BOUNCES as usize + 1) * (SPHERE_CAPACITY + 1) < 65_535);
+/// lavapipe leaves a loop without a word after this many iterations, counted over all
+/// loops of an invocation group (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa).
+const MAX_ITERATIONS: u64 = 65_535;
+
+/// Without sampling lights, one sample of the longest path among the most spheres stays
+/// below.
+const _: () = assert!((MAX_BOUNCES as u64 + 1) * (SPHERE_CAPACITY as u64 + 1) < MAX_ITERATIONS);
 
 /// Workgroups along one dimension of a dispatch, WebGPU's default limit.
 const MAX_WORKGROUPS: u32 = 65_535;
@@ -47,6 +50,7 @@ impl GpuTracer {
         let packed = kernel::pack(scene, &viewpoint, scale)
             .map_err(|error| TraceError::Device(error.to_string()))?;
         let kernel = Kernel::of(scene, &viewpoint, &packed);
+        check_iterations(scene, &packed)?;
         Self::with_kernel(scene, gpu, &packed.scene, &kernel.wgsl())
     }
 
@@ -210,6 +214,28 @@ impl Tracer for GpuTracer {
     fn describe(&self) -> Description {
         self.gpu.description().clone()
     }
+}
+
+/// Refuses paths whose loops a driver may cut short: a vertex that samples lights goes
+/// through the spheres twice and through the lights up to three times (two passes to
+/// pick one, one for the chance of one that the path hits by itself).
+fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceError> {
+    if !scene.settings().estimator().samples_lights() {
+        return Ok(());
+    }
+    let (spheres, lights) = (scene.spheres().len() as u64, packed.light_places().len() as u64);
+    let vertex = 1 + 2 * (spheres + 1) + 3 * (lights + 1);
+    let most = MAX_ITERATIONS / vertex - 1;
+    let bounces = scene.settings().bounces();
+    if u64::from(bounces) < most {
+        return Ok(());
+    }
+    Err(TraceError::Device(format!(
+        "{bounces} bounces among {spheres} spheres with {lights} lights are more than the {} \
+         estimator traces on a device in one go; it takes fewer than {most} bounces here \
+         (--device cpu takes any)",
+        scene.settings().estimator().name()
+    )))
 }
 
 fn pipeline(device: &wgpu::Device, wgsl: &str) -> wgpu::ComputePipeline {

@@ -64,13 +64,23 @@ impl Nearest {
     }
 }
 
-/// The lights that an estimator samples.
+/// The lights of a scene, for the estimators that sample them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Lights {
-    /// Place in the uniform buffer of the only light there is.
-    pub only: Option<u32>,
-    /// Whether one of them is in anchored form.
-    pub huge: bool,
+pub enum Lights {
+    /// There are none.
+    None,
+    /// There is one.
+    One {
+        /// Its place in the uniform buffer.
+        place: u32,
+        /// Whether it is in anchored form.
+        huge: bool,
+    },
+    /// There are several.
+    Many {
+        /// Whether one of them is in anchored form.
+        huge: bool,
+    },
 }
 
 impl Lights {
@@ -78,8 +88,21 @@ impl Lights {
     #[must_use]
     pub fn of(packed: &Packed) -> Self {
         let places = packed.light_places();
-        let only = if let [place] = places[..] { Some(place) } else { None };
-        Self { only, huge: places.iter().any(|&place| place >= packed.scene.factored_count) }
+        let huge = places.iter().any(|&place| place >= packed.scene.factored_count);
+        match *places {
+            [] => Self::None,
+            [place] => Self::One { place, huge },
+            _ => Self::Many { huge },
+        }
+    }
+
+    /// The place of the only light there is.
+    fn only(self) -> Option<u32> {
+        if let Self::One { place, .. } = self { Some(place) } else { None }
+    }
+
+    fn any_huge(self) -> bool {
+        matches!(self, Self::One { huge: true, .. } | Self::Many { huge: true })
     }
 }
 
@@ -96,7 +119,7 @@ pub struct Kernel {
     pub effects: Effects,
     /// How it searches for the nearest hit.
     pub nearest: Nearest,
-    /// The lights, for the estimators that sample them.
+    /// The lights.
     pub lights: Lights,
 }
 
@@ -123,7 +146,7 @@ impl Kernel {
              const TILE_SAMPLES: u32 = {samples}u;\n"
         );
         let mut parts = self.tracing(self.diffuse());
-        if self.estimator.samples_lights() {
+        if self.samples_lights() {
             parts.extend(self.connecting());
             parts.push(
                 match self.estimator {
@@ -139,6 +162,16 @@ impl Kernel {
         let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
         parts.extend(last.map(str::to_owned));
         parts.join("\n")
+    }
+
+    /// Whether there is a light to sample and a surface to sample it from.
+    fn samples_lights(&self) -> bool {
+        let from_here = match self.estimator {
+            Estimator::Implicit | Estimator::Cosine => false,
+            Estimator::Explicit => self.effects.diffuse,
+            Estimator::Mis => true,
+        };
+        from_here && self.lights != Lights::None
     }
 
     /// How diffuse surfaces are sampled.
@@ -197,15 +230,18 @@ impl Kernel {
         } else {
             fragment!("light_exterior")
         };
-        let form =
-            if self.lights.huge { fragment!("light_both") } else { fragment!("light_factored") };
-        let pick = match self.lights.only {
+        let form = if self.lights.any_huge() {
+            fragment!("light_both")
+        } else {
+            fragment!("light_factored")
+        };
+        let pick = match self.lights.only() {
             Some(place) => format!("const LIGHT: u32 = {place}u;\n\n") + fragment!("pick_one"),
             None => fragment!("pick_many").to_owned(),
         };
         let occluded = match &self.nearest {
             Nearest::Loop => fragment!("occluded_loop").to_owned(),
-            Nearest::Unrolled(forms) => unrolled_occluded(forms, self.lights.only),
+            Nearest::Unrolled(forms) => unrolled_occluded(forms, self.lights.only()),
         };
         [fragment!("evaluate"), evaluate, fragment!("light"), form, side, &pick, &occluded]
             .map(str::to_owned)
@@ -289,7 +325,7 @@ pub fn probe_source() -> String {
         estimator: Estimator::Mis,
         effects: Effects::ALL,
         nearest: Nearest::Loop,
-        lights: Lights { only: None, huge: true },
+        lights: Lights::Many { huge: true },
     };
     let mut parts = kernel.tracing(fragment!("diffuse_uniform"));
     parts.extend(kernel.connecting());

@@ -10,7 +10,7 @@ use super::closed_form_scenes::{
 };
 use super::judge::{Estimate, Quantity, detectable, deviation, is_exactly, limit};
 use candor::film::Film;
-use candor::scene::{Scene, Sphere};
+use candor::scene::{Estimator, Scene, Sphere};
 use candor::tracer::Tracer;
 
 /// Exponents and angles, in degrees, at which Phong lobes are held to their albedo.
@@ -92,11 +92,11 @@ impl Case {
     }
 }
 
-/// Every case.
-fn cases() -> Vec<Case> {
+/// Every case, for an estimator: the means are the same for all of them.
+fn cases(estimator: Estimator) -> Vec<Case> {
     let mut cases = exact();
-    cases.extend(diffuse_under_light());
-    cases.extend(diffuse_under_cut_light());
+    cases.extend(diffuse_under_light(estimator));
+    cases.extend(diffuse_under_cut_light(estimator));
     cases.extend(walls());
     cases.extend(in_shell());
     cases.extend(lobes());
@@ -105,7 +105,7 @@ fn cases() -> Vec<Case> {
     cases.extend(coincident());
     // Other random numbers for every case, so that no two share an unlucky draw.
     for (seed, case) in (0..).zip(&mut cases) {
-        let settings = case.scene.settings().with_seed(seed);
+        let settings = case.scene.settings().with_seed(seed).with_estimator(estimator);
         case.scene = case.scene.clone().with_settings(settings);
     }
     cases
@@ -158,8 +158,10 @@ fn exact() -> Vec<Case> {
     ]
 }
 
-/// A diffuse sphere under a light that is wholly above the horizon.
-fn diffuse_under_light() -> Vec<Case> {
+/// A diffuse sphere under a light that is wholly above the horizon. Where the path finds
+/// the light by itself, the second moment of its samples is known too, and so is their
+/// variance: under cosine-weighted directions a sample is ρL or nothing.
+fn diffuse_under_light(estimator: Estimator) -> Vec<Case> {
     let (albedo, radiance, h) = (0.5, 10.0, 2.0_f64);
     let half_angle = (1.0 / h).asin();
     let case = |degrees: f64| {
@@ -168,23 +170,36 @@ fn diffuse_under_light() -> Vec<Case> {
         let mean = Claim::grey(truth, 0.01)
             .not("cosine dropped", 2.0 * albedo * radiance * (1.0 - half_angle.cos()))
             .not("pdf 1/π", truth / 2.0);
-        let moment = (albedo * radiance).powi(2) * hemisphere_second_moment(zenith, half_angle);
-        let squared = Claim { quantity: Quantity::SquaredLuminance, ..Claim::grey(moment, 0.01) };
+        let uniform = hemisphere_second_moment(zenith, half_angle);
+        let cosine = sphere_form_factor(zenith, h);
+        let moment = match estimator {
+            Estimator::Implicit => Some((uniform, cosine)),
+            Estimator::Cosine => Some((cosine, uniform)),
+            Estimator::Explicit | Estimator::Mis => None,
+        };
+        let squared = moment.map(|(own, other)| {
+            let square = (albedo * radiance).powi(2);
+            Claim { quantity: Quantity::SquaredLuminance, ..Claim::grey(square * own, 0.01) }
+                .not("the other estimator's", square * other)
+        });
         let name = format!("diffuse, light at {degrees}°");
-        Case::means(name, lit(1.0, albedo, zenith, h, radiance), 12288, vec![mean, squared])
+        let claims = [mean].into_iter().chain(squared).collect();
+        Case::means(name, lit(1.0, albedo, zenith, h, radiance), 12288, claims)
     };
     [20.0, 50.0].map(case).into()
 }
 
 /// The same, but the horizon cuts the light.
-fn diffuse_under_cut_light() -> Vec<Case> {
+/// Cosine-weighted directions hardly ever go there, hence the more samples.
+fn diffuse_under_cut_light(estimator: Estimator) -> Vec<Case> {
     let (albedo, radiance, h) = (0.5, 10.0, 2.0_f64);
     let case = |(degrees, effect): (f64, f64)| {
         let zenith = degrees.to_radians();
         let claim = Claim::grey(albedo * radiance * sphere_form_factor(zenith, h), effect)
             .not("horizon ignored", albedo * radiance * zenith.cos().max(0.0) / (h * h));
         let name = format!("diffuse, light at {degrees}°, cut");
-        Case::means(name, lit(1.0, albedo, zenith, h, radiance), 8192, vec![claim])
+        let samples = if estimator == Estimator::Cosine { 24576 } else { 8192 };
+        Case::means(name, lit(1.0, albedo, zenith, h, radiance), samples, vec![claim])
     };
     [(75.0, 0.02), (90.0, 0.02), (105.0, 0.03)].map(case).into()
 }
@@ -295,8 +310,8 @@ fn coincident() -> Vec<Case> {
 ///
 /// # Panics
 /// With the cases that fail.
-pub fn check_closed_forms(make: &dyn Fn(&Scene) -> Box<dyn Tracer>) {
-    let cases = cases();
+pub fn check_closed_forms(estimator: Estimator, make: &dyn Fn(&Scene) -> Box<dyn Tracer>) {
+    let cases = cases(estimator);
     let claims = cases.iter().map(|case| case.claims().len()).sum();
     println!("{:<46}{:>12}{:>12}{:>7}{:>9}", "case", "truth", "mean", "z", "detects");
     let failures: Vec<String> = cases.iter().flat_map(|case| case.judge(make, claims)).collect();

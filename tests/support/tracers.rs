@@ -5,10 +5,9 @@
 
 use super::{gpu, scenes::packed};
 use candor::cpu::CpuTracer;
-use candor::effects::Effects;
 use candor::film::Film;
 use candor::gpu::GpuTracer;
-use candor::kernel::{Kernel, Nearest};
+use candor::kernel::Kernel;
 use candor::scene::Scene;
 use candor::tracer::{Ledger, Tracer};
 use candor::viewpoint::Viewpoint;
@@ -24,13 +23,7 @@ pub fn twin(scene: &Scene) -> CpuTracer {
 
 /// The text of the kernel that the scene calls for.
 pub fn kernel(scene: &Scene) -> String {
-    let kernel = Kernel {
-        size: scene.size(),
-        bounces: scene.settings().bounces(),
-        effects: Effects::of(scene, &Viewpoint::of(scene)),
-        nearest: Nearest::of(&packed(scene).forms),
-    };
-    kernel.wgsl()
+    Kernel::of(scene, &Viewpoint::of(scene), &packed(scene)).wgsl()
 }
 
 /// A tracer with another kernel.
