@@ -150,15 +150,15 @@ impl Findings {
             None => "rel. mse  none, b has no light".to_owned(),
         });
         if let Some(found) = &self.comparison {
-            lines.push(format!("image     z {:+.2}, p {:.2e}", found.image.z, found.image.p));
+            lines.push(format!("image     z {:+.2}, p {}", found.image.z, p_text(found.image.p)));
             lines.push(format!(
-                "tiles     largest z {:+.2}, p {:.2e} as the largest of {}",
+                "tiles     largest z {:+.2}, p {} as the largest of {}",
                 found.worst.z,
-                found.worst_tile_p(),
+                p_text(found.worst_tile_p()),
                 found.tiles
             ));
-            let p = found.all_tiles_p();
-            lines.push(format!("          rms z {:.3}, p {p:.2e} of all tiles", found.rms_z));
+            let p = p_text(found.all_tiles_p());
+            lines.push(format!("          rms z {:.3}, p {p} of all together", found.rms_z));
             lines.push(format!("unproven  {}", self.unproven_line()));
         }
         lines.join("\n")
@@ -175,11 +175,11 @@ impl Findings {
     }
 
     fn verdict_line(&self) -> String {
-        let p = self.comparison.as_ref().map_or(f64::NAN, Comparison::p);
+        let p = p_text(self.comparison.as_ref().map_or(1.0, Comparison::p));
         let text = match self.verdict {
             Verdict::Identical => "identical: every r, g and b is the same".to_owned(),
             Verdict::Differ => {
-                format!("THEY DIFFER by more than their error bars (p {p:.2e} < {ALPHA:e})")
+                format!("THEY DIFFER by more than their error bars (p {p}; the limit is {ALPHA:e})")
             }
             Verdict::WithinErrorBars if self.shares_samples => {
                 "they differ by no more than their error bars, which says little where samples are \
@@ -187,7 +187,9 @@ impl Findings {
                     .to_owned()
             }
             Verdict::WithinErrorBars => {
-                format!("they differ by no more than their error bars (p {p:.2e} >= {ALPHA:e})")
+                format!(
+                    "they differ by no more than their error bars (p {p}; the limit is {ALPHA:e})"
+                )
             }
             Verdict::TooFewHits => "none: too few hits to tell; render more --spp".to_owned(),
             Verdict::NoErrorBars => "none: neither picture has error bars".to_owned(),
@@ -279,15 +281,27 @@ fn legend(output: &Path, unit: MapUnit, block: usize) -> String {
     };
     let place = if block == 1 { String::new() } else { format!(", of {block}x{block} pixels") };
     let path = output.display();
-    format!("wrote     {path}: a brighter is red, darker blue; full colour at {full}{place}")
+    format!(
+        "wrote     {path}: red where a is brighter, blue where darker, grey where \
+         unproven; full colour at {full}{place}"
+    )
 }
 
 fn text(size: ImageSize) -> String {
     format!("{}x{}", size.width(), size.height())
 }
 
+/// A p-value as people read it; far out in the tail its size means nothing.
+fn p_text(p: f64) -> String {
+    match p {
+        p if p >= 1e-3 => format!("{p:.3}"),
+        p if p >= 1e-99 => format!("{p:.1e}"),
+        _ => "below 1e-99".to_owned(),
+    }
+}
+
 fn percent(share: f64) -> String {
-    format!("{:.3} %", 100.0 * share)
+    format!("{:.2} %", 100.0 * share)
 }
 
 /// (a - b)/b, where b has light.

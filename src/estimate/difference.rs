@@ -1,7 +1,7 @@
 //! How much two stored pictures differ, as numbers and place by place.
 
 use super::compare::rounding;
-use super::group::{Group, Sides, add, blocks, z};
+use super::group::{Group, blocks, z};
 use super::measured::{Measured, luminance};
 use crate::scene::ImageSize;
 
@@ -104,9 +104,7 @@ pub fn difference_map(a: &Measured<'_>, b: &Measured<'_>) -> DifferenceMap {
         });
         return DifferenceMap { size, block: 1, values: values.collect(), unit: MapUnit::Tenths };
     }
-    let mut image = Sides::default();
-    Measured::side_by_side(a, b).for_each(|pixel| add(&mut image, &pixel));
-    let block = block_side(size, image[0].hits().max(image[1].hits()));
+    let block = block_side(a, b);
     let rounding = rounding(a, b);
     let values = blocks(size, block, Measured::side_by_side(a, b)).into_iter().map(|sides| {
         let known = sides.iter().any(|side: &Group| side.proven);
@@ -115,10 +113,14 @@ pub fn difference_map(a: &Measured<'_>, b: &Measured<'_>) -> DifferenceMap {
     DifferenceMap { size, block, values: values.collect(), unit: MapUnit::StandardErrors }
 }
 
-/// The smallest side at which blocks have enough of the image's hits on average.
-#[expect(clippy::cast_precision_loss, reason = "sides up to 16")]
-fn block_side(size: ImageSize, hits: f64) -> usize {
-    let per_pixel = hits / f64::from(size.pixels());
+/// The smallest side at which blocks have enough hits on average in one of the pictures.
+#[expect(clippy::cast_precision_loss, reason = "counts of pixels")]
+fn block_side(a: &Measured<'_>, b: &Measured<'_>) -> usize {
+    let mut hits = [0.0; 2];
+    for pixel in Measured::side_by_side(a, b) {
+        hits = std::array::from_fn(|i| hits[i] + pixel[i].hits());
+    }
+    let per_pixel = f64::max(hits[0], hits[1]) / a.rgb.len() as f64;
     let mut length = 1;
     while length < MAX_BLOCK && per_pixel * (length * length) as f64 <= MAP_HITS {
         length *= 2;
