@@ -21,7 +21,7 @@ fn read(path: &Path) -> Result<StoredPicture, String> {
 
 /// A picture whose values are exact in half floats, with one unproven pixel.
 fn picture() -> Picture {
-    let value = |i: usize| if i == 7 { 0.0 } else { [0.25, 0.5, 3.0, 17.0][i * i % 4] };
+    let value = |i: usize| if i == 7 { 0.0 } else { [0.25, 0.5, 3.0, 17.0][i % 4] };
     let (width, height) = (20, 18);
     Picture {
         size: ImageSize::new(width, height).expect("a size"),
@@ -168,20 +168,21 @@ fn torn_files_are_refused() {
     }
 }
 
-/// Whatever one wrong byte does, it makes a picture or a refusal, not a panic. A header
-/// that claims another size is left: the memory that it needs is checked before.
+/// Whatever one wrong byte does, it makes a picture or a refusal, not a panic: every seventh
+/// byte of each file. A header that claims another size is left alone, as the program first
+/// asks whether there is memory for it.
 #[test]
 fn corrupt_files_do_no_harm() {
     let folder = TempDir::new().expect("a folder");
-    let mut files = vec![("ours", std::fs::read(ours(&folder)).expect("it is there"))];
+    let mut files = vec![std::fs::read(ours(&folder)).expect("it is there")];
     let path = folder.path().join("corrupt.exr");
     for (name, encoding) in encodings() {
         theirs(&path, &["R", "G", "B"], encoding, |x| x, name == "piz");
-        files.push((name, std::fs::read(&path).expect("it is there")));
+        files.push(std::fs::read(&path).expect("it is there"));
     }
     let (mut refused, mut read_in_full) = (0, 0);
-    for (_, whole) in files {
-        for place in 0..whole.len() {
+    for (start, whole) in files.into_iter().enumerate() {
+        for place in (start..whole.len()).step_by(7) {
             let mut bytes = whole.clone();
             bytes[place] ^= [0x01, 0x80, 0xff][place % 3];
             std::fs::write(&path, &bytes).expect("written");

@@ -264,8 +264,9 @@ fn describe(name: &str, picture: &StoredPicture) -> String {
     let header = &picture.header;
     let path = header.path().display();
     let Some(samples) = &header.samples else {
-        let half = if header.half { ", in half floats" } else { "" };
-        return format!("{name}         {path}: no error bars, taken as exact{half}");
+        let half = if header.half { "; in half floats" } else { "" };
+        let meaning = "no error bars; taken as exact, so that its noise counts as difference";
+        return format!("{name}         {path}: {meaning}{half}");
     };
     let mut facts = vec![format!("{} spp", samples.count())];
     facts.extend(header.seed.map(|seed| format!("seed {seed}")));
