@@ -84,12 +84,12 @@ impl SampleRanges {
         Ok(union)
     }
 
-    /// The first samples that both hold.
+    /// Samples that both hold: one run of them, if there are any.
     #[must_use]
     pub fn shared(&self, other: &Self) -> Option<Range<u64>> {
         self.0.iter().find_map(|a| {
-            let both = other.0.iter().map(|b| a.start.max(b.start)..a.end.min(b.end));
-            both.into_iter().find(|shared| !shared.is_empty())
+            let mut both = other.0.iter().map(|b| a.start.max(b.start)..a.end.min(b.end));
+            both.find(|shared| !shared.is_empty())
         })
     }
 }
