@@ -9,6 +9,7 @@ use crate::estimate::{
 use crate::report::{self, FULL_COLOUR, PictureHeader, StoredPicture};
 use crate::scene::ImageSize;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Family-wise probability of a false alarm. A person who compares pictures by hand meets
@@ -200,8 +201,8 @@ impl Findings {
     fn json(&self, args: &DiffArgs, output: &Path) -> String {
         let found = self.comparison.as_ref();
         let json = Json {
-            a: &args.a,
-            b: &args.b,
+            a: args.a.to_string_lossy(),
+            b: args.b.to_string_lossy(),
             width: self.size.width(),
             height: self.size.height(),
             verdict: self.verdict,
@@ -222,7 +223,7 @@ impl Findings {
             unproven_pixels: self.unproven,
             shares_samples: self.shares_samples,
             warnings: &self.warnings,
-            outputs: [output],
+            outputs: [output.to_string_lossy()],
         };
         serde_json::to_string(&json).expect("plain values serialize")
     }
@@ -313,8 +314,8 @@ fn relative(a: f64, b: f64) -> String {
 /// The `--json` object; pairs are of a and b.
 #[derive(Serialize)]
 struct Json<'a> {
-    a: &'a Path,
-    b: &'a Path,
+    a: Cow<'a, str>,
+    b: Cow<'a, str>,
     width: u32,
     height: u32,
     verdict: Verdict,
@@ -335,5 +336,5 @@ struct Json<'a> {
     unproven_pixels: [Option<usize>; 2],
     shares_samples: bool,
     warnings: &'a [String],
-    outputs: [&'a Path; 1],
+    outputs: [Cow<'a, str>; 1],
 }
