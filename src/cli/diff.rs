@@ -12,8 +12,8 @@ use serde::Serialize;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// Family-wise probability of a false alarm. A person who compares pictures by hand meets
-/// one in a thousand comparisons; a difference of five standard errors is still found.
+/// Family-wise probability of a false alarm: a person who compares pictures by hand meets one
+/// in a thousand comparisons. The image's mean must be 3.6 standard errors off to differ.
 const ALPHA: f64 = 1e-3;
 
 pub(super) fn run(args: &DiffArgs) -> Result<u8, Refusal> {
@@ -255,8 +255,8 @@ fn shared_samples(a: &PictureHeader, b: &PictureHeader) -> Option<String> {
     let seed = a.seed.filter(|seed| b.seed == Some(*seed))?;
     let shared = ours.shared(theirs)?;
     Some(format!(
-        "both pictures hold samples {}..{} of seed {seed}: their errors are alike, and z and p \
-         look better than they are; render one with another --seed",
+        "both pictures hold samples {}..{} of seed {seed}: their errors are alike, and \
+         equal pictures look more equal than they are; render one with another --seed",
         shared.start, shared.end
     ))
 }

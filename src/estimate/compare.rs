@@ -11,9 +11,9 @@ use crate::scene::ImageSize;
 /// Tiles have this many pixels on a side, fewer at the picture's edge.
 const TILE: usize = 16;
 
-/// A z-test needs this many effective hits on one side; the other then expects as many. With 1000 the mean of
-/// Bernoulli hits has skewness 0.03, and the normal tail at five standard errors is
-/// off by exp(0.03·5³/6), less than a factor of two.
+/// A z-test needs this many effective hits on one side; the other then expects as many.
+/// With 1000 the mean of Bernoulli hits has skewness 0.03, and the normal tail at five
+/// standard errors is off by exp(0.03·5³/6), less than a factor of two.
 const MIN_HITS: f64 = 1000.0;
 
 /// Relative rounding error granted to a mean that has no variance: a handful of `f32`
