@@ -117,3 +117,30 @@ fn films_of_other_pictures_are_refused() {
     merged.merge(&film(size(3, 2), 10.0, 4..8)).expect("the same picture");
     assert_eq!((merged.samples().count(), merged.pixels()[0][0]), (8, 2));
 }
+
+/// Ranges read back as they are written, and share exactly the samples that both sets hold.
+#[test]
+fn ranges_are_read_back_and_compared() {
+    let mut last = SampleRanges::default();
+    for world in 0..500 {
+        let mut ranges = SampleRanges::default();
+        for step in 0..6 {
+            let [a, b, ..] = random_bits(SampleKey { pixel: world, index: step }, 0, 1);
+            let start = u64::from(a % 64);
+            // What is already there is refused, which is tested above.
+            let _ = ranges.insert(start..(start + u64::from(b % 9)).min(64));
+        }
+        if ranges.count() > 0 {
+            assert_eq!(ranges.to_string().parse(), Ok(ranges.clone()));
+        }
+        let common = model(&ranges) & model(&last);
+        match ranges.shared(&last) {
+            None => assert_eq!(common, 0, "{ranges} and {last}"),
+            Some(range) => assert_eq!(mask(&range) & !common, 0, "{ranges} and {last}: {range:?}"),
+        }
+        last = ranges;
+    }
+    for bad in ["", "3", "3..", "5..3", "4..4", "0..4,", "0..4,2..6", "a..b", "0..4 5..6"] {
+        assert!(bad.parse::<SampleRanges>().is_err(), "\"{bad}\"");
+    }
+}

@@ -31,6 +31,8 @@ pub(super) enum Command {
     /// Checks this machine's device against the f64 reference; exits 1 unless it agrees.
     #[command(allow_negative_numbers = true)]
     Verify(VerifyArgs),
+    /// Compares two EXR pictures with their error bars; exits 1 if they differ by more.
+    Diff(DiffArgs),
     /// Lists what can render here.
     Devices,
 }
@@ -40,7 +42,7 @@ impl Command {
         match self {
             Self::Render(args) => args.common.threads,
             Self::Verify(args) => args.common.threads,
-            Self::Devices => None,
+            Self::Diff(_) | Self::Devices => None,
         }
     }
 }
@@ -107,6 +109,26 @@ pub(super) struct RenderArgs {
 pub(super) struct VerifyArgs {
     #[command(flatten)]
     pub common: CommonArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 they differ by no more than their error bars; \
+                         1 by more; 2 no verdict (unreadable files, no error bars, too few hits)")]
+pub(super) struct DiffArgs {
+    /// Picture (EXR), from candor or another renderer.
+    pub a: PathBuf,
+    /// Picture that it is compared with, the reference. One without error bars is taken as
+    /// exact.
+    pub b: PathBuf,
+    /// Picture of where they differ, .png. Default: A.diff.png in the current folder.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// No warnings on stderr.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Results on stdout as one JSON object.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What should render.

@@ -9,6 +9,10 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 /// `f32` channels twice, and the PNG.
 const PICTURE_BYTES: u64 = 2 * 16 + 3;
 
+/// Bytes per pixel while two pictures are compared: one as it is kept and the other as it
+/// comes from its file, four `f32` channels, and as it is kept.
+const COMPARISON_BYTES: u64 = 3 * 16;
+
 /// Bytes of this machine's memory that a render of `size` takes. A tracer that runs on
 /// this machine's processor has its film here, besides the copy that is developed.
 pub(super) fn needed(size: ImageSize, on_processor: bool) -> u64 {
@@ -18,16 +22,31 @@ pub(super) fn needed(size: ImageSize, on_processor: bool) -> u64 {
 
 /// Refuses a picture that does not fit.
 pub(super) fn check(size: ImageSize, needed: u64) -> Result<(), Refusal> {
-    let available = available();
-    if needed <= available {
-        return Ok(());
+    match lack(size, needed) {
+        None => Ok(()),
+        Some(lack) => refuse(format_args!("{lack}; render a smaller --size")),
     }
+}
+
+/// Refuses to compare two pictures of `size` that do not fit.
+pub(super) fn check_comparison(size: ImageSize) -> Result<(), Refusal> {
+    match lack(size, u64::from(size.pixels()) * COMPARISON_BYTES) {
+        None => Ok(()),
+        Some(lack) => refuse(lack),
+    }
+}
+
+/// What is lacking for a picture that takes `needed` bytes, if anything.
+fn lack(size: ImageSize, needed: u64) -> Option<String> {
+    let available = available();
     let (width, height) = (size.width(), size.height());
-    refuse(format_args!(
-        "{width}x{height} pixels need {} of memory, {} are available; render a smaller --size",
-        units::bytes(needed),
-        units::bytes(available)
-    ))
+    (needed > available).then(|| {
+        format!(
+            "{width}x{height} pixels need {} of memory, {} are available",
+            units::bytes(needed),
+            units::bytes(available)
+        )
+    })
 }
 
 /// Free memory of this machine or of the container; where the system does not say, no

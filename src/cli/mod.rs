@@ -4,6 +4,7 @@
 mod args;
 mod choose;
 mod devices;
+mod diff;
 mod environment;
 mod interrupt;
 mod memory;
@@ -53,6 +54,7 @@ pub fn main() -> ExitCode {
     let ended = std::panic::catch_unwind(|| match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Diff(args) => diff::run(args),
         Command::Devices => devices::run(),
     });
     match ended {

@@ -1,11 +1,22 @@
 //! What a film says about the picture: means, standard errors, and how sure they are.
 //!
-//! One module of statistics serves the renderer, `verify` and the tests.
+//! One module of statistics serves the renderer, `verify`, `diff` and the tests.
 
 mod compare;
+mod difference;
+mod group;
+mod measured;
+mod normal;
+mod pair;
 mod pixel;
 mod summary;
 
-pub use compare::{Comparison, Deviation, Paired, compare, p_value, pair, z_limit};
+pub use compare::{Comparison, Deviation, compare, compare_pictures};
+pub use difference::{
+    Difference, DifferenceMap, MapUnit, RELATIVE_MSE_EPSILON, difference, difference_map,
+};
+pub use measured::{Bars, Measured};
+pub use normal::{p_value, z_limit};
+pub use pair::{Paired, pair};
 pub use pixel::{PixelEstimate, estimate};
 pub use summary::{Summary, summarize};

@@ -3,6 +3,7 @@
 use crate::scene::MAX_SPP;
 use std::fmt;
 use std::ops::Range;
+use std::str::FromStr;
 
 /// Sample indices lie below this: the random numbers have 56 bits for them.
 pub const MAX_SAMPLE_INDEX: u64 = 1 << 56;
@@ -81,6 +82,35 @@ impl SampleRanges {
             union.insert(range.clone())?;
         }
         Ok(union)
+    }
+
+    /// Samples that both hold: one run of them, if there are any.
+    #[must_use]
+    pub fn shared(&self, other: &Self) -> Option<Range<u64>> {
+        self.0.iter().find_map(|a| {
+            let mut both = other.0.iter().map(|b| a.start.max(b.start)..a.end.min(b.end));
+            both.find(|shared| !shared.is_empty())
+        })
+    }
+}
+
+/// Reads what `Display` writes, such as `0..256,512..768`.
+impl FromStr for SampleRanges {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut ranges = Self::default();
+        for part in text.split(',') {
+            let ends = part.split_once("..");
+            let range = ends.and_then(|(a, b)| Some(a.parse().ok()?..b.parse().ok()?));
+            match range {
+                Some(range) if range.start < range.end => {
+                    ranges.insert(range).map_err(|error| error.to_string())?;
+                }
+                _ => return Err(format!("expected ranges such as 0..256, not \"{part}\"")),
+            }
+        }
+        Ok(ranges)
     }
 }
 

@@ -13,10 +13,13 @@ use exr::prelude::{
 use std::path::Path;
 
 /// Prefix of candor's header attributes.
-const PREFIX: &str = "candor.";
+pub(super) const PREFIX: &str = "candor.";
+
+/// Channel of the standard error of the mean luminance.
+pub(super) const STANDARD_ERROR: &str = "stderr.L";
 
 /// Rec. 709 primaries and the D65 white point (ITU-R BT.709-6, table 1).
-const REC_709: Chromaticities = Chromaticities {
+pub(super) const REC_709: Chromaticities = Chromaticities {
     red: Vec2(0.64, 0.33),
     green: Vec2(0.30, 0.60),
     blue: Vec2(0.15, 0.06),
@@ -92,7 +95,7 @@ pub fn write(path: &Path, picture: &Picture, provenance: &Provenance) -> Result<
             channel("R", plane(0)),
             channel("G", plane(1)),
             channel("B", plane(2)),
-            channel("stderr.L", picture.luminance_error.clone()),
+            channel(STANDARD_ERROR, picture.luminance_error.clone()),
         ]
         .into_iter()
         .collect(),

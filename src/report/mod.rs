@@ -1,12 +1,16 @@
-//! What a render leaves behind: EXR and PNG, each written whole or not at all.
+//! Pictures in files: EXR, written and read, and PNG. Each is written whole or not at all.
 
 mod atomic;
+mod difference;
 mod exr;
+mod exr_read;
 mod picture;
 mod png;
 
 pub use atomic::{check_writable, replace};
+pub use difference::{FULL_COLOUR, write as write_difference};
 pub use exr::{Provenance, film_samples, write as write_exr};
+pub use exr_read::{PictureHeader, StoredPicture};
 pub use picture::Picture;
 pub use png::write as write_png;
 

@@ -10,16 +10,17 @@ use std::path::Path;
 /// If the file cannot be written; one that was there is then untouched.
 pub fn write(path: &Path, picture: &Picture, exposure: f64) -> Result<(), FileError> {
     let gain = exposure.exp2();
-    let bytes: Vec<u8> =
-        picture.rgb.iter().flatten().map(|&x| encode(f64::from(x) * gain)).collect();
+    let shown = |rgb: &[f32; 3]| rgb.map(|x| encode(f64::from(x) * gain));
+    let pixels: Vec<[u8; 3]> = picture.rgb.iter().map(shown).collect();
+    write_rgb(path, picture.size.width(), &pixels)
+}
+
+/// Writes rows of `width` pixels, already in sRGB.
+pub(super) fn write_rgb(path: &Path, width: u32, pixels: &[[u8; 3]]) -> Result<(), FileError> {
+    let height = u32::try_from(pixels.len() / width as usize).unwrap_or(u32::MAX);
     replace(path, |file| {
         PngEncoder::new(file)
-            .write_image(
-                &bytes,
-                picture.size.width(),
-                picture.size.height(),
-                image::ExtendedColorType::Rgb8,
-            )
+            .write_image(pixels.as_flattened(), width, height, image::ExtendedColorType::Rgb8)
             .map_err(|error| error.to_string())
     })
 }

@@ -7,7 +7,9 @@ use std::path::Path;
 #[test]
 fn help_and_version_go_to_stdout() {
     let folder = Folder::new();
-    for arguments in ["--help", "-h", "help", "render --help", "verify -h", "devices --help"] {
+    for arguments in
+        ["--help", "-h", "help", "render --help", "verify -h", "diff --help", "devices --help"]
+    {
         assert!(folder.candor(arguments).silently_done().contains("Usage: candor"), "{arguments}");
     }
     let version = concat!("candor ", env!("CARGO_PKG_VERSION"), "\n");

@@ -3,6 +3,7 @@
 mod arguments;
 mod candor;
 mod devices;
+mod diff;
 mod films;
 mod pictures;
 #[cfg(unix)]
