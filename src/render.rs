@@ -107,12 +107,12 @@ pub fn render(
             }
         }
         let round = Instant::now();
-        let traced = count.min(total - done).min(watch.next_count(done) - done);
+        let size = count.min(total - done).min(watch.next_count(done) - done);
         let first = plan.samples.start + done;
-        tracer.add_samples(first..first + traced)?;
-        done += traced;
+        tracer.add_samples(first..first + size)?;
+        done += size;
         let left = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
-        count = next_count(count, traced, round.elapsed(), left.unwrap_or(ROUND).min(ROUND));
+        count = next_count(count, size, round.elapsed(), left.unwrap_or(ROUND).min(ROUND));
         watch.observe(tracer, done, started)?;
         observe(Progress { done, elapsed: started.elapsed(), summary: watch.summary });
     };
