@@ -278,6 +278,14 @@ impl Finished {
         format!("error {:.3} %{}", 100.0 * error, bound.unwrap_or_default())
     }
 
+    /// What a target that was not reached would cost, where that can be told.
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    fn more(&self, target: f64) -> Option<String> {
+        let more = self.summary.spread.samples_to(target)?.saturating_sub(self.summary.samples);
+        let seconds = self.seconds() * more as f64 / self.summary.samples as f64;
+        Some(format!("{} takes {} more", units::percent(target), units::time(seconds)))
+    }
+
     /// The last line: what was reached, and what the next halving of the error would cost.
     fn line(&self, target: Option<f64>) -> String {
         let mut facts = vec![
@@ -289,6 +297,9 @@ impl Finished {
         ];
         if self.summary.coarse_pixels > 0 {
             facts.push(format!("{} pixels near the film's step", self.summary.coarse_pixels));
+        }
+        if let Some(target) = target.filter(|_| self.target_reached(target) == Some(false)) {
+            facts.extend(self.more(target));
         }
         if self.summary.relative_error.is_some_and(|error| error > 0.0) {
             // The error falls with the square root of the samples: half of it takes four times.
