@@ -1,7 +1,7 @@
-//! The progressive loop: drives a tracer through a range of samples until it is done,
-//! out of time or interrupted.
+//! The progressive loop: drives a tracer through a range of samples until it is done, at a
+//! stated error, out of time or interrupted.
 
-use crate::estimate::{Summary, summarize};
+use crate::estimate::{FIRST_LOOK, Summary, is_look, next_look, summarize};
 use crate::tracer::{TraceError, Tracer};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,12 +15,26 @@ const ROUND: Duration = Duration::from_millis(200);
 const LOOK_SHARE: f64 = 0.01;
 
 /// What to render.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// Samples of every pixel.
     pub samples: Range<u64>,
     /// Stop after this long, with whatever samples there are; at least one.
     pub time: Option<Duration>,
+    /// Stop when the upper confidence bound on the relative RMS error
+    /// ([`Summary::error_bound`]) is at or below this fraction.
+    pub target_error: Option<f64>,
+}
+
+/// Who wants to know the picture's error while it is rendered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Audience {
+    /// Nobody: it is looked at only where a target asks for it.
+    Nobody,
+    /// A person: also from time to time.
+    Person,
+    /// A log: also at every power of two.
+    Log,
 }
 
 /// Why a render stopped.
@@ -28,6 +42,8 @@ pub struct Plan {
 pub enum Stop {
     /// All samples are traced.
     Done,
+    /// The error is at or below the target.
+    Target,
     /// The time was up.
     Time,
     /// Interrupted from outside.
@@ -41,7 +57,9 @@ pub struct Progress {
     pub done: u64,
     /// Time since the start.
     pub elapsed: Duration,
-    /// The latest look at the picture's error, if there was one.
+    /// The latest look at the picture's error, if there was one; it was just now if
+    /// `summary.samples` is `done`. It has a bound only at the counts that the bound's
+    /// confidence is spread over ([`is_look`]).
     pub summary: Option<Summary>,
 }
 
@@ -54,8 +72,10 @@ pub struct Outcome {
     pub elapsed: Duration,
 }
 
-/// Renders according to plan. `observe` is told of the progress after every round;
-/// with `look`, also of the picture's error from time to time.
+/// Renders according to plan. `observe` is told of the progress after every round.
+///
+/// With a target, the samples that the render ends with depend on the picture alone, not on
+/// the time that it took, unless a limit ends it.
 ///
 /// # Errors
 /// If the tracer fails.
@@ -63,20 +83,22 @@ pub fn render(
     tracer: &mut dyn Tracer,
     plan: &Plan,
     interrupt: &AtomicBool,
-    look: bool,
+    audience: Audience,
     observe: &mut dyn FnMut(Progress),
 ) -> Result<Outcome, TraceError> {
     let started = Instant::now();
-    let mut next = plan.samples.start;
-    let mut count = 1;
-    let mut summary = None;
-    let mut next_look = Duration::from_secs(1);
+    let mut watch = Watch::new(plan.target_error, audience);
+    let total = plan.samples.end - plan.samples.start;
+    let (mut done, mut count) = (0, 1);
     let stop = loop {
-        if next >= plan.samples.end {
+        if watch.target_reached {
+            break Stop::Target;
+        }
+        if done >= total {
             break Stop::Done;
         }
         // At least one sample of every pixel is traced, so that there is a picture.
-        if next > plan.samples.start {
+        if done > 0 {
             if interrupt.load(Ordering::Relaxed) {
                 break Stop::Interrupted;
             }
@@ -85,30 +107,88 @@ pub fn render(
             }
         }
         let round = Instant::now();
-        let end = plan.samples.end.min(next + count);
-        tracer.add_samples(next..end)?;
+        let size = count.min(total - done).min(watch.next_count(done) - done);
+        let first = plan.samples.start + done;
+        tracer.add_samples(first..first + size)?;
+        done += size;
         let left = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
-        count = next_count(end - next, round.elapsed(), left.unwrap_or(ROUND).min(ROUND));
-        next = end;
-        if look && started.elapsed() >= next_look {
-            let looked = Instant::now();
-            summary = Some(summarize(&tracer.film()?));
-            let pause = looked.elapsed().div_f64(LOOK_SHARE).max(Duration::from_secs(1));
-            next_look = started.elapsed() + pause;
-        }
-        observe(Progress { done: next - plan.samples.start, elapsed: started.elapsed(), summary });
+        count = next_count(count, size, round.elapsed(), left.unwrap_or(ROUND).min(ROUND));
+        watch.observe(tracer, done, started)?;
+        observe(Progress { done, elapsed: started.elapsed(), summary: watch.summary });
     };
     Ok(Outcome { stop, elapsed: started.elapsed() })
 }
 
-/// Samples of the next round, from what the last one took; at most four times as many.
+/// When the error is looked at, and what was seen.
+struct Watch {
+    audience: Audience,
+    target: Option<f64>,
+    /// The next look that the target asks for.
+    target_look: u64,
+    target_reached: bool,
+    /// The next look for those who watch.
+    next_time: Duration,
+    summary: Option<Summary>,
+}
+
+impl Watch {
+    fn new(target: Option<f64>, audience: Audience) -> Self {
+        Self {
+            audience,
+            target,
+            target_look: target.map_or(u64::MAX, |_| FIRST_LOOK),
+            target_reached: false,
+            next_time: Duration::from_secs(1),
+            summary: None,
+        }
+    }
+
+    /// The count after `done` at which a round must end for a look.
+    fn next_count(&self, done: u64) -> u64 {
+        match self.audience {
+            Audience::Log => self.target_look.min((done + 1).next_power_of_two()),
+            Audience::Nobody | Audience::Person => self.target_look,
+        }
+    }
+
+    /// Looks, if it is time.
+    fn observe(
+        &mut self,
+        tracer: &mut dyn Tracer,
+        done: u64,
+        started: Instant,
+    ) -> Result<(), TraceError> {
+        let by_count =
+            done == self.target_look || (self.audience == Audience::Log && done.is_power_of_two());
+        let by_time = self.audience != Audience::Nobody && started.elapsed() >= self.next_time;
+        if !by_count && !by_time {
+            return Ok(());
+        }
+        let looked = Instant::now();
+        let mut summary = summarize(&tracer.film()?);
+        if !is_look(done) {
+            summary.error_bound = None;
+        }
+        if let (Some(target), true) = (self.target, done == self.target_look) {
+            self.target_reached = summary.error_bound.is_some_and(|bound| bound <= target);
+            self.target_look = next_look(done, summary.spread.samples_to(target));
+        }
+        self.summary = Some(summary);
+        let pause = looked.elapsed().div_f64(LOOK_SHARE).max(Duration::from_secs(1));
+        self.next_time = started.elapsed() + pause;
+        Ok(())
+    }
+}
+
+/// Samples of the next round, from the time that `traced` samples of the last one took; at
+/// most four times as many. A round that was cut short for a look says little about more.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     clippy::cast_precision_loss,
     reason = "a guess at a count"
 )]
-fn next_count(count: u64, took: Duration, budget: Duration) -> u64 {
-    let fitting = count as f64 * budget.as_secs_f64() / took.as_secs_f64().max(1e-6);
-    (fitting as u64).clamp(1, count * 4)
+fn next_count(count: u64, traced: u64, took: Duration, budget: Duration) -> u64 {
+    let fitting = traced as f64 * budget.as_secs_f64() / took.as_secs_f64().max(1e-6);
+    (fitting as u64).clamp(1, count.max(4 * traced))
 }

@@ -55,6 +55,7 @@ fn ours(folder: &TempDir) -> PathBuf {
         unproven_pixels: 1,
         coarse_pixels: 0,
         relative_error: Some(0.1),
+        error_bound: None,
     };
     write_exr(&path, &picture(), &provenance).expect("it can be written");
     path

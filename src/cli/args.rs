@@ -14,8 +14,8 @@ const MAX_THREADS: NonZeroUsize = NonZeroUsize::new(1024).unwrap();
 
 /// A headless path tracer for scenes of spheres that states its own error.
 ///
-/// Exit codes: 0 done; 1 a check failed; 2 the input or the machine does not allow it;
-/// 130 interrupted, with what was rendered so far written.
+/// Exit codes: 0 done; 1 a check failed or a target was not reached; 2 the input or the machine
+/// does not allow it; 130 interrupted, with what was rendered so far written.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100)]
 pub(super) struct Cli {
@@ -96,6 +96,13 @@ pub(super) struct RenderArgs {
     /// Stop after this long, such as 30s or 5m.
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     pub time: Option<Duration>,
+    /// Stop when the picture's relative RMS error is this small with 99 % confidence, such as
+    /// 1% or 0.01; --spp and --time are then limits, and exit code 1 says that one came first.
+    #[arg(long, value_name = "E", value_parser = parse_target, conflicts_with = "samples")]
+    pub target_error: Option<f64>,
+    /// Log samples, seconds and error to this CSV file as the render goes.
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
     /// Brightens the PNG by this many stops.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0,
           value_parser = parse_exposure)]
@@ -193,6 +200,19 @@ fn parse_time(text: &str) -> Result<Duration, String> {
     }
 }
 
+/// A fraction, or a percentage with its sign. More than the picture's whole mean is no error to
+/// aim at, and a bare 5 would be one.
+fn parse_target(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 100.0));
+    match number.trim().parse::<f64>().map(|number| number / unit) {
+        Ok(error) if error > 0.0 && error <= 1.0 => Ok(error),
+        _ => {
+            Err("expected a percentage such as 1%, or a fraction above 0 and up to 1 such as 0.01"
+                .to_owned())
+        }
+    }
+}
+
 fn parse_exposure(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
@@ -202,7 +222,7 @@ fn parse_exposure(text: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cli, parse_samples, parse_size, parse_time};
+    use super::{Cli, parse_samples, parse_size, parse_target, parse_time};
     use clap::CommandFactory;
 
     #[test]
@@ -232,6 +252,15 @@ mod tests {
         assert_eq!(parse_time("90s").map(|t| t.as_secs()), Ok(90));
         for bad in ["30", "0s", "s", "-3s", "soon"] {
             assert!(parse_time(bad).is_err(), "{bad}");
+        }
+    }
+    #[test]
+    fn targets() {
+        for (text, error) in [("1%", 0.01), ("0.5 %", 0.005), ("0.01", 0.01), ("1", 1.0)] {
+            assert_eq!(parse_target(text), Ok(error), "{text}");
+        }
+        for bad in ["5", "0", "0%", "101%", "-1%", "nan", "NaN%", "inf%", "%", "", "1 percent"] {
+            assert!(parse_target(bad).is_err(), "{bad}");
         }
     }
 }

@@ -46,6 +46,11 @@ impl Outputs {
         Ok(Self { files, force: args.force, quiet: args.common.quiet })
     }
 
+    /// Whether a file is one of them.
+    pub fn contains(&self, file: &Path) -> bool {
+        self.files.iter().any(|(path, _)| path == file)
+    }
+
     /// Refuses to replace a film that holds more than `samples` samples per pixel.
     pub fn check_films(&self, samples: u64) -> Result<(), Refusal> {
         match self.better_film(samples)? {

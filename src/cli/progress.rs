@@ -1,7 +1,8 @@
 //! Progress on stderr: a bar on a terminal, plain lines elsewhere, nothing if quiet.
 
 use super::{on_terminal, streams, units};
-use crate::render::Progress;
+use crate::estimate::Summary;
+use crate::render::{Audience, Plan, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
 
@@ -14,6 +15,7 @@ pub(super) struct Reporter {
     pixels: u32,
     planned: u64,
     limit: Option<Duration>,
+    target: Option<f64>,
     /// Samples and time after the first round, which compiles the kernel and so says
     /// nothing about the rate of the others.
     first: Option<(u64, Duration)>,
@@ -26,14 +28,16 @@ enum Style {
 }
 
 impl Reporter {
-    /// For a render of `planned` samples of `pixels` pixels within `limit`.
-    pub fn new(quiet: bool, pixels: u32, planned: u64, limit: Option<Duration>) -> Self {
+    /// For a render of `pixels` pixels.
+    pub fn new(quiet: bool, pixels: u32, plan: &Plan) -> Self {
         let style = match (quiet, on_terminal()) {
             (true, _) => Style::Quiet,
             (false, true) => Style::Bar(bar()),
             (false, false) => Style::Lines { next: Duration::ZERO },
         };
-        Self { style, pixels, planned, limit, first: None }
+        let planned = plan.samples.end - plan.samples.start;
+        let (limit, target) = (plan.time, plan.target_error);
+        Self { style, pixels, planned, limit, target, first: None }
     }
 
     /// A line that stays on the screen.
@@ -45,9 +49,12 @@ impl Reporter {
         }
     }
 
-    /// Whether anybody sees the error.
-    pub fn shows_error(&self) -> bool {
-        !matches!(self.style, Style::Quiet)
+    /// Who sees the error.
+    pub fn audience(&self) -> Audience {
+        match self.style {
+            Style::Quiet => Audience::Nobody,
+            Style::Bar(_) | Style::Lines { .. } => Audience::Person,
+        }
     }
 
     /// Tells of a round.
@@ -92,10 +99,35 @@ impl Reporter {
             // The look may be some samples old; the error falls with their square root.
             .map(|(error, at)| error * (at as f64 / progress.done as f64).sqrt())
             .map_or(String::new(), |error| format!(", error {:.2} %", 100.0 * error));
+        let left = self.left(progress, frames);
+        format!("{} spp, {}{error}, {left}", progress.done, units::rate(rate))
+    }
+
+    /// The time left, to the target if there is one and no limit comes first.
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    fn left(&self, progress: &Progress, frames: f64) -> String {
         let by_samples = (self.planned - progress.done) as f64 / frames;
-        let by_time = self.limit.map_or(f64::INFINITY, |l| (l.as_secs_f64() - elapsed).max(0.0));
-        let left = by_samples.min(by_time);
-        format!("{} spp, {}{error}, {} left", progress.done, units::rate(rate), units::time(left))
+        let left = |limit: Duration| limit.saturating_sub(progress.elapsed).as_secs_f64();
+        let limit = by_samples.min(self.limit.map_or(f64::INFINITY, left));
+        let limited = format!("{} left", units::time(limit));
+        let Some(target) = self.target else { return limited };
+        let shown = units::percent(target);
+        match self.needed(progress.summary.as_ref()) {
+            None => format!("time to {shown} unknown"),
+            Some(needed) => {
+                let to_target = needed.saturating_sub(progress.done) as f64 / frames;
+                if to_target <= limit {
+                    format!("{} to {shown}", units::time(to_target))
+                } else {
+                    format!("{limited}, {} to {shown}", units::time(to_target))
+                }
+            }
+        }
+    }
+
+    /// Samples per pixel that the target is predicted to take.
+    fn needed(&self, summary: Option<&Summary>) -> Option<u64> {
+        summary?.spread.samples_to(self.target?)
     }
 
     /// Thousandths of the render that are done.
@@ -106,7 +138,8 @@ impl Reporter {
         reason = "for show"
     )]
     fn share(&self, progress: &Progress) -> u64 {
-        let samples = progress.done as f64 / self.planned as f64;
+        let planned = self.needed(progress.summary.as_ref()).unwrap_or(self.planned);
+        let samples = progress.done as f64 / planned.min(self.planned) as f64;
         let time = self.limit.map_or(0.0, |l| progress.elapsed.as_secs_f64() / l.as_secs_f64());
         (1000.0 * samples.max(time).min(1.0)) as u64
     }

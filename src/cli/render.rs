@@ -3,12 +3,14 @@
 use super::args::{DeviceChoice, RenderArgs};
 use super::output::Outputs;
 use super::progress::Reporter;
-use super::{DONE, INTERRUPTED, Refusal, choose, interrupt, memory, setup, streams, units};
+use super::{
+    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup, streams, units,
+};
 use crate::bound::sample_scale;
-use crate::estimate::{Summary, summarize};
+use crate::estimate::{FIRST_LOOK, Summary, summarize};
 use crate::film::{Film, SampleRanges};
-use crate::render::{Outcome, Plan, Stop, render};
-use crate::report::{Picture, Provenance};
+use crate::render::{Audience, Outcome, Plan, Progress, Stop, render};
+use crate::report::{ErrorLog, FileError, Picture, Provenance};
 use crate::scene::{MAX_SPP, Scene};
 use crate::tracer::{Description, Ledger};
 use serde::Serialize;
@@ -19,26 +21,45 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     let scene = setup::load(&args.common)?;
     let plan = plan(args, &scene);
     let outputs = Outputs::new(args)?;
-    if plan.time.is_none() {
+    if let Some(log) = args.log.as_ref().filter(|log| outputs.contains(log)) {
+        return refuse(format_args!("{}: named both as output and as log", log.display()));
+    }
+    if plan.time.is_none() && plan.target_error.is_none() {
         outputs.check_films(plan.samples.end - plan.samples.start)?;
     }
-    let finished =
-        if scene.has_lights() { trace(args, &scene, &plan)? } else { darkness(&scene, &plan)? };
+    let finished = if scene.has_lights() {
+        trace(args, &scene, &plan)?
+    } else {
+        darkness(args, &scene, &plan)?
+    };
     let picture = Picture::develop(&finished.film, !scene.has_lights());
     let provenance = finished.provenance(args, &scene);
     interrupt::writing_begins();
     let files = outputs.write(&picture, &provenance, args.exposure)?;
     streams::results(&finished.report(args, &files))?;
-    Ok(if finished.outcome.stop == Stop::Interrupted { INTERRUPTED } else { DONE })
+    if let Some(error) = finished.log_error {
+        return Err(error.into());
+    }
+    Ok(match (finished.outcome.stop, finished.target_reached(args.target_error)) {
+        (Stop::Interrupted, _) => INTERRUPTED,
+        (_, Some(false)) => FAILED,
+        _ => DONE,
+    })
 }
 
-/// What to render: the samples that were asked for; with `--time` alone, as many as fit.
+/// What to render: the samples that were asked for; with `--time` or `--target-error` alone, as
+/// many as fit or as it takes.
 fn plan(args: &RenderArgs, scene: &Scene) -> Plan {
-    let spp = match (args.common.spp, args.time) {
-        (None, Some(_)) => MAX_SPP,
+    let limited = args.time.is_some() || args.target_error.is_some();
+    let spp = match args.common.spp {
+        None if limited => MAX_SPP,
         _ => scene.settings().spp(),
     };
-    Plan { samples: args.samples.clone().unwrap_or(0..spp), time: args.time }
+    Plan {
+        samples: args.samples.clone().unwrap_or(0..spp),
+        time: args.time,
+        target_error: args.target_error,
+    }
 }
 
 /// A render that is over.
@@ -48,6 +69,36 @@ struct Finished {
     summary: Summary,
     outcome: Outcome,
     tracer: Description,
+    /// Why the log is not whole.
+    log_error: Option<FileError>,
+}
+
+/// The log that was asked for, and what became of it. A log that cannot be written costs no
+/// picture: it is given up, and said at the end.
+struct Log {
+    file: Option<ErrorLog>,
+    error: Option<FileError>,
+}
+
+impl Log {
+    fn create(args: &RenderArgs) -> Result<Self, Refusal> {
+        let file = args.log.as_deref().map(ErrorLog::create).transpose()?;
+        Ok(Self { file, error: None })
+    }
+
+    fn observe(&mut self, progress: &Progress) {
+        if let Some(summary) = progress.summary.filter(|look| look.samples == progress.done) {
+            self.add(&summary, progress.elapsed);
+        }
+    }
+
+    fn add(&mut self, summary: &Summary, elapsed: Duration) {
+        let added = self.file.as_mut().map_or(Ok(()), |file| file.add(summary, elapsed));
+        if let Err(error) = added {
+            self.error = Some(error);
+            self.file = None;
+        }
+    }
 }
 
 fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refusal> {
@@ -59,8 +110,8 @@ fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refu
     let mut tracer = chosen.tracer(scene)?;
     let description = tracer.describe();
 
-    let planned = plan.samples.end - plan.samples.start;
-    let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), planned, plan.time);
+    let mut log = Log::create(args)?;
+    let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), plan);
     if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
         reporter.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
     }
@@ -72,23 +123,34 @@ fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refu
         description.driver,
         units::bytes(needed),
     ));
-    let look = reporter.shows_error();
-    let outcome = render(tracer.as_mut(), plan, interrupt, look, &mut |p| reporter.observe(p));
+    let audience = if log.file.is_some() { Audience::Log } else { reporter.audience() };
+    let outcome = render(tracer.as_mut(), plan, interrupt, audience, &mut |progress| {
+        log.observe(&progress);
+        reporter.observe(progress);
+    });
     reporter.finish();
     let outcome = outcome?;
     let film = tracer.film()?;
     let ledger = tracer.ledger()?;
-    Ok(Finished { summary: summarize(&film), film, ledger, outcome, tracer: description })
+    let summary = summarize(&film);
+    log.add(&summary, outcome.elapsed);
+    Ok(Finished { summary, film, ledger, outcome, tracer: description, log_error: log.error })
 }
 
 /// A scene without lights is a picture of exact zeros; nothing needs to be traced.
-fn darkness(scene: &Scene, plan: &Plan) -> Result<Finished, Refusal> {
+fn darkness(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refusal> {
     let on_host = true;
     memory::check(scene.size(), memory::needed(scene.size(), on_host))?;
     let mut samples = SampleRanges::default();
-    samples.insert(plan.samples.clone())?;
+    // A target is reached at the first look.
+    let end = plan.target_error.map_or(plan.samples.end, |_| plan.samples.end.min(FIRST_LOOK));
+    samples.insert(plan.samples.start..end)?;
+    let summary = Summary::of_darkness(samples.count());
+    let mut log = Log::create(args)?;
+    log.add(&summary, Duration::ZERO);
     Ok(Finished {
-        summary: Summary::of_darkness(samples.count()),
+        summary,
+        log_error: log.error,
         film: Film::awaiting(scene.size(), sample_scale(scene), samples),
         ledger: Ledger::default(),
         outcome: Outcome { stop: Stop::Done, elapsed: Duration::ZERO },
@@ -111,6 +173,9 @@ struct Json<'a> {
     seconds: f64,
     samples_per_second: Option<f64>,
     relative_error: Option<f64>,
+    error_bound: Option<f64>,
+    target_error: Option<f64>,
+    target_reached: Option<bool>,
     unproven_pixels: u64,
     coarse_pixels: u64,
     invalid_samples: u64,
@@ -118,6 +183,11 @@ struct Json<'a> {
 }
 
 impl Finished {
+    /// Whether the error is certainly at or below the target, if there is one.
+    fn target_reached(&self, target: Option<f64>) -> Option<bool> {
+        target.map(|target| self.summary.error_bound.is_some_and(|bound| bound <= target))
+    }
+
     fn seconds(&self) -> f64 {
         self.outcome.elapsed.as_secs_f64()
     }
@@ -144,12 +214,13 @@ impl Finished {
             unproven_pixels: self.summary.unproven_pixels,
             coarse_pixels: self.summary.coarse_pixels,
             relative_error: self.summary.relative_error,
+            error_bound: self.summary.error_bound,
         }
     }
 
     fn report(&self, args: &RenderArgs, files: &[PathBuf]) -> String {
         if args.common.json {
-            return self.json(files);
+            return self.json(args, files);
         }
         let written = files.iter().map(|file| format!("wrote {}", file.display()));
         let invalid = self.ledger.records.iter().map(|sample| {
@@ -161,10 +232,10 @@ impl Finished {
                 sample.reason
             )
         });
-        written.chain(invalid).chain([self.line()]).collect::<Vec<_>>().join("\n")
+        written.chain(invalid).chain([self.line(args.target_error)]).collect::<Vec<_>>().join("\n")
     }
 
-    fn json(&self, outputs: &[PathBuf]) -> String {
+    fn json(&self, args: &RenderArgs, outputs: &[PathBuf]) -> String {
         let json = Json {
             device: &self.tracer.device,
             driver: &self.tracer.driver,
@@ -174,6 +245,9 @@ impl Finished {
             seconds: self.seconds(),
             samples_per_second: self.rate(),
             relative_error: self.summary.relative_error,
+            error_bound: self.summary.error_bound,
+            target_error: args.target_error,
+            target_reached: self.target_reached(args.target_error),
             unproven_pixels: self.summary.unproven_pixels,
             coarse_pixels: self.summary.coarse_pixels,
             invalid_samples: self.ledger.count,
@@ -182,19 +256,40 @@ impl Finished {
         serde_json::to_string(&json).expect("plain values serialize")
     }
 
-    /// The last line: what was reached, and what the next halving of the error would cost.
-    fn line(&self) -> String {
+    /// How it ended.
+    fn ending(&self, target: Option<f64>) -> String {
         let stopped = match self.outcome.stop {
-            Stop::Done => "done",
+            Stop::Done | Stop::Target => "done",
             Stop::Time => "time is up",
             Stop::Interrupted => "interrupted",
         };
-        let error = self
-            .summary
-            .relative_error
-            .map_or("error unknown".to_owned(), |e| format!("error {:.3} %", 100.0 * e));
+        match (target, self.target_reached(target)) {
+            (Some(target), Some(true)) => format!("{} reached", units::percent(target)),
+            (Some(target), _) => format!("{stopped}, {} not reached", units::percent(target)),
+            _ => stopped.to_owned(),
+        }
+    }
+
+    /// The error, and with a target also what it is at most.
+    fn error(&self, target: Option<f64>) -> String {
+        let Some(error) = self.summary.relative_error else { return "error unknown".to_owned() };
+        let bound = self.summary.error_bound.filter(|_| target.is_some());
+        let bound = bound.map(|b| format!(", at most {:.3} % with 99 % confidence", 100.0 * b));
+        format!("error {:.3} %{}", 100.0 * error, bound.unwrap_or_default())
+    }
+
+    /// What a target that was not reached would cost, where that can be told.
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    fn more(&self, target: f64) -> Option<String> {
+        let more = self.summary.spread.samples_to(target)?.saturating_sub(self.summary.samples);
+        let seconds = self.seconds() * more as f64 / self.summary.samples as f64;
+        Some(format!("{} takes {} more", units::percent(target), units::time(seconds)))
+    }
+
+    /// The last line: what was reached, and what the next halving of the error would cost.
+    fn line(&self, target: Option<f64>) -> String {
         let mut facts = vec![
-            error,
+            self.error(target),
             format!("{} spp", self.summary.samples),
             format!("{:.2} s on {}", self.seconds(), self.tracer.device),
             format!("{} invalid samples", self.ledger.count),
@@ -203,10 +298,13 @@ impl Finished {
         if self.summary.coarse_pixels > 0 {
             facts.push(format!("{} pixels near the film's step", self.summary.coarse_pixels));
         }
+        if let Some(target) = target.filter(|_| self.target_reached(target) == Some(false)) {
+            facts.extend(self.more(target));
+        }
         if self.summary.relative_error.is_some_and(|error| error > 0.0) {
             // The error falls with the square root of the samples: half of it takes four times.
             facts.push(format!("half the error takes {} more", units::time(3.0 * self.seconds())));
         }
-        format!("{stopped}: {}", facts.join(", "))
+        format!("{}: {}", self.ending(target), facts.join(", "))
     }
 }

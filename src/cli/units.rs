@@ -26,6 +26,12 @@ pub(super) fn time(seconds: f64) -> String {
     text.split(' ').take(2).collect::<Vec<_>>().join(" ")
 }
 
+/// A fraction as a percentage, with the digits that it was given with: "0.5 %".
+#[expect(clippy::cast_possible_truncation, reason = "the digits that f64 adds to 100·0.07 go")]
+pub(super) fn percent(fraction: f64) -> String {
+    format!("{} %", (100.0 * fraction) as f32)
+}
+
 /// One decimal, and the prefix of the unit that follows.
 fn scaled(amount: f64) -> String {
     let (scale, prefix) = match amount {
@@ -38,13 +44,21 @@ fn scaled(amount: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{bytes, rate, time};
+    use super::{bytes, percent, rate, time};
 
     #[test]
     fn amounts() {
         assert_eq!(bytes(22_272), "22.3 kB");
         assert_eq!(bytes(596_980_000_000), "597.0 GB");
         assert_eq!(rate(14_234_567.0), "14.2 Msamples/s");
+    }
+
+    #[test]
+    fn percentages() {
+        let table = [(0.01, "1 %"), (0.07, "7 %"), (0.005, "0.5 %"), (1.0, "100 %")];
+        for (fraction, text) in table {
+            assert_eq!(percent(fraction), text);
+        }
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::cpu::CpuTracer;
 use crate::film::Film;
-use crate::render::{Plan, Stop, render};
+use crate::render::{Audience, Plan, Stop, render};
 use crate::scene::Scene;
 use crate::tracer::{Description, Tracer};
 use crate::verify::{ALPHA, MAX_BIAS, Verdict, judge};
@@ -65,11 +65,11 @@ impl Run<'_> {
         scene: &Scene,
         mut tracer: Box<dyn Tracer>,
     ) -> Result<Option<Film>, Refusal> {
-        let mut reporter = Reporter::new(self.quiet, scene.size().pixels(), self.spp, None);
+        let plan = Plan { samples: 0..self.spp, time: None, target_error: None };
+        let mut reporter = Reporter::new(self.quiet, scene.size().pixels(), &plan);
         reporter.message(&format!("{what}: {}", tracer.describe().device));
-        let plan = Plan { samples: 0..self.spp, time: None };
-        let outcome =
-            render(tracer.as_mut(), &plan, self.interrupt, false, &mut |p| reporter.observe(p));
+        let (audience, mut observe) = (Audience::Nobody, |p| reporter.observe(p));
+        let outcome = render(tracer.as_mut(), &plan, self.interrupt, audience, &mut observe);
         reporter.finish();
         if outcome?.stop == Stop::Interrupted {
             return Ok(None);

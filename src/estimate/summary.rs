@@ -1,5 +1,6 @@
 //! The error of a whole picture, without a reference.
 
+use super::ceiling::Spread;
 use super::pixel::{COARSE, estimate};
 use crate::film::Film;
 
@@ -13,12 +14,18 @@ pub struct Summary {
     /// Relative RMS error: √(mean over pixels of σ²/n) ÷ mean luminance. `None` with
     /// fewer than two samples, or where every pixel is black and that is not proven.
     pub relative_error: Option<f64>,
+    /// Upper confidence bound on the realised error, which [`Self::relative_error`] estimates:
+    /// 99 % for all looks of a render together, see [`Spread::ceiling`]. `None` where nothing
+    /// is proven yet.
+    pub error_bound: Option<f64>,
     /// Standard error of the mean luminance.
     pub luminance_error: Option<f64>,
     /// Pixels to which no sample has contributed yet: their error is unproven, not zero.
     pub unproven_pixels: u64,
     /// Pixels whose film step exceeds 1e-6 of their mean.
     pub coarse_pixels: u64,
+    /// What the bound is made of, to ask it about other counts.
+    pub spread: Spread,
 }
 
 impl Summary {
@@ -29,9 +36,11 @@ impl Summary {
             samples,
             luminance: 0.0,
             relative_error: Some(0.0),
+            error_bound: Some(0.0),
             luminance_error: Some(0.0),
             unproven_pixels: 0,
             coarse_pixels: 0,
+            spread: Spread::new(0.0),
         }
     }
 }
@@ -42,24 +51,25 @@ impl Summary {
 pub fn summarize(film: &Film) -> Summary {
     let samples = film.samples().count();
     let pixels = film.pixels().len() as f64;
-    let mut luminance = 0.0;
-    let mut variance = 0.0;
+    let mut spread = Spread::new(film.scale().bound().into());
     let (mut unproven_pixels, mut coarse_pixels) = (0, 0);
     for words in film.pixels() {
         let pixel = estimate(film, words);
-        luminance += pixel.luminance / pixels;
-        variance += pixel.variance / samples as f64 / pixels;
+        spread.add(&pixel);
         unproven_pixels += u64::from(pixel.is_unproven());
         let coarse = pixel.luminance < COARSE * film.scale().step();
         coarse_pixels += u64::from(coarse && !pixel.is_unproven());
     }
+    let (luminance, variance) = (spread.luminance(), spread.variance() / samples as f64);
     let measured = samples >= 2 && luminance > 0.0;
     Summary {
         samples,
         luminance,
         relative_error: measured.then(|| variance.sqrt() / luminance),
+        error_bound: Some(spread.ceiling(samples)).filter(|bound| bound.is_finite()),
         luminance_error: measured.then(|| (variance / pixels).sqrt()),
         unproven_pixels,
         coarse_pixels,
+        spread,
     }
 }

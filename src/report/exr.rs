@@ -55,6 +55,8 @@ pub struct Provenance {
     pub coarse_pixels: u64,
     /// Relative RMS error of the picture, where it is known.
     pub relative_error: Option<f64>,
+    /// Upper confidence bound (99 %) on it, where there is one.
+    pub error_bound: Option<f64>,
 }
 
 impl Provenance {
@@ -76,8 +78,9 @@ impl Provenance {
             ("unprovenPixels", self.unproven_pixels.to_string()),
             ("coarsePixels", self.coarse_pixels.to_string()),
         ];
-        if let Some(error) = self.relative_error {
-            list.push(("relativeError", error.to_string()));
+        let errors = [("relativeError", self.relative_error), ("errorBound", self.error_bound)];
+        for (name, error) in errors {
+            list.extend(error.map(|error| (name, error.to_string())));
         }
         list
     }

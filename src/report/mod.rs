@@ -1,9 +1,11 @@
-//! Pictures in files: EXR, written and read, and PNG. Each is written whole or not at all.
+//! What a render leaves behind, in files: EXR, written and read, and PNG, each written whole or
+//! not at all, and a log of the error.
 
 mod atomic;
 mod difference;
 mod exr;
 mod exr_read;
+mod log;
 mod picture;
 mod png;
 
@@ -11,6 +13,7 @@ pub use atomic::{check_writable, replace};
 pub use difference::{FULL_COLOUR, write as write_difference};
 pub use exr::{Provenance, film_samples, write as write_exr};
 pub use exr_read::{PictureHeader, StoredPicture};
+pub use log::ErrorLog;
 pub use picture::Picture;
 pub use png::write as write_png;
 

@@ -19,7 +19,10 @@ fn help_and_version_go_to_stdout() {
 #[test]
 fn help_names_the_exit_codes() {
     let help = Folder::new().candor("--help").silently_done();
-    assert!(help.contains("Exit codes: 0 done; 1 a check failed; 2"), "{help}");
+    assert!(
+        help.contains("Exit codes: 0 done; 1 a check failed or a target was not reached; 2"),
+        "{help}"
+    );
 }
 
 #[test]
@@ -53,6 +56,10 @@ fn mistakes_in_arguments_are_refused() {
         ("render scene.toml --samples 0..4 --spp 4", "cannot be used with"),
         ("render scene.toml --time 30", "such as 30s"),
         ("render scene.toml --time 0s", "longer than zero"),
+        ("render scene.toml --target-error 5", "a percentage such as 1%, or a fraction"),
+        ("render scene.toml --target-error 0%", "above 0 and up to 1"),
+        ("render scene.toml --target-error nan", "such as 0.01"),
+        ("render scene.toml --target-error 1% --samples 0..4", "cannot be used with"),
         ("render scene.toml --exposure nan", "from -100 to 100"),
         ("render scene.toml --threads 0", "from 1 to 1024"),
         ("render scene.toml --threads 100000", "from 1 to 1024"),

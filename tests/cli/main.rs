@@ -9,3 +9,4 @@ mod pictures;
 #[cfg(unix)]
 mod signals;
 mod streams;
+mod target;

@@ -1,0 +1,84 @@
+//! The log of a render's error: a CSV file that grows while the picture is made.
+
+use super::{FileError, check_writable};
+use crate::estimate::Summary;
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// The first line, by which a log is known.
+const HEADER: &str = "samples,seconds,relative_error,error_bound,luminance,unproven_pixels";
+
+/// A log under way. Columns: samples per pixel, seconds since the start, relative RMS error,
+/// the upper bound on it (only at the counts that its confidence is spread over), mean
+/// luminance, pixels without a hit. What is not known is empty.
+#[derive(Debug)]
+pub struct ErrorLog {
+    path: PathBuf,
+    file: File,
+    last: u64,
+}
+
+impl ErrorLog {
+    /// Begins a log. Of the files that are there, only an older log or an empty file is
+    /// replaced.
+    ///
+    /// # Errors
+    /// If another file is there, or none can be written.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        if !may_replace(path)? {
+            return Err(FileError::new(path, &"is no error log of candor, and stays as it is"));
+        }
+        let fail = |error| failed(path, &error);
+        let mut file = File::create(path).map_err(fail)?;
+        writeln!(file, "{HEADER}").map_err(fail)?;
+        Ok(Self { path: path.to_owned(), file, last: 0 })
+    }
+
+    /// Adds a row, unless the last one has as many samples.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn add(&mut self, summary: &Summary, elapsed: Duration) -> Result<(), FileError> {
+        if summary.samples == self.last {
+            return Ok(());
+        }
+        self.last = summary.samples;
+        let known = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        let row = format!(
+            "{},{:.3},{},{},{},{}\n",
+            summary.samples,
+            elapsed.as_secs_f64(),
+            known(summary.relative_error),
+            known(summary.error_bound),
+            summary.luminance,
+            summary.unproven_pixels
+        );
+        // In one piece, so that whoever reads along never sees half a row.
+        self.file.write_all(row.as_bytes()).map_err(|error| failed(&self.path, &error))
+    }
+}
+
+fn may_replace(path: &Path) -> Result<bool, FileError> {
+    match path.metadata() {
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            return check_writable(path).map(|()| true);
+        }
+        Err(error) => return Err(failed(path, &error)),
+        Ok(there) if there.is_dir() => return check_writable(path).map(|()| false),
+        // A pipe or a terminal has nothing to lose.
+        Ok(there) if !there.is_file() => return Ok(true),
+        Ok(_) => {}
+    }
+    let mut first = Vec::new();
+    let file = File::open(path).map_err(|error| failed(path, &error))?;
+    let longest = HEADER.len() as u64 + 2;
+    let line = BufReader::new(file.take(longest)).read_until(b'\n', &mut first);
+    line.map_err(|error| failed(path, &error))?;
+    Ok(first.is_empty() || first.trim_ascii_end() == HEADER.as_bytes())
+}
+
+fn failed(path: &Path, error: &std::io::Error) -> FileError {
+    FileError::new(path, &format!("cannot be written: {error}"))
+}
