@@ -103,18 +103,21 @@ pub fn joined_lights() -> Scene {
     picture([0.0, 3.0, 7.0], [0.0, 1.0, 0.0], 2, spheres)
 }
 
-/// Forty lamps whose powers span six decades, and as many balls.
+/// Forty lamps whose powers span six decades, and as many balls; the brightest is half sunk
+/// into the floor and holds most of its ball.
 pub fn forty_lights() -> Scene {
     let mut spheres = vec![floor()];
     for i in 0..40_u32 {
         let (column, row) = (f64::from(i % 8), f64::from(i / 8));
-        let place = DVec3::new(1.2 * column - 4.2, 2.0, 1.2 * row - 3.0);
+        let place = DVec3::new(1.2 * column - 4.2, 0.0, 1.2 * row - 3.0);
         // Powers out of order: 7 is prime to 40.
-        let power = 10_f64.powf(f64::from(i * 7 % 40) * 6.0 / 39.0 - 4.0);
+        let rank = i * 7 % 40;
+        let power = 10_f64.powf(f64::from(rank) * 6.0 / 39.0 - 4.0);
+        let height = if rank == 39 { 0.1 } else { 2.0 };
         let tint = DVec3::new(1.0, 0.5 + f64::from(i % 3) / 4.0, 1.5 - f64::from(i % 2));
-        spheres.push(sphere(place, 0.45, emitter(power * tint)));
+        spheres.push(sphere(place + height * DVec3::Y, 0.45, emitter(power * tint)));
         let ball = if i % 3 == 0 { glossy(0.8, f64::from(i)) } else { diffuse(0.7) };
-        spheres.push(sphere(place - 1.6 * DVec3::Y, 0.35, ball));
+        spheres.push(sphere(place + 0.4 * DVec3::Y, 0.35, ball));
     }
     picture([0.0, 4.0, 9.0], [0.0, 0.5, 0.0], 2, spheres)
 }
