@@ -17,8 +17,8 @@ use candor::scene::Estimator::{self, Cosine, Explicit, Implicit, Mis};
 use candor::scene::Scene;
 use candor::tracer::Tracer;
 use support::light_scenes::{
-    at_the_floor, classic_of, forty_lights, gloss, hidden_light, hollow, in_light, joined_lights,
-    under_sun,
+    at_the_floor, classic_of, coincident_crowd, coincident_lights, forty_lights, gloss,
+    hidden_light, hollow, in_light, joined_lights, under_sun,
 };
 use support::tracers::{film, mutant, on_device, trace, twin};
 
@@ -153,6 +153,8 @@ fn the_device_has_one_mean() {
         Case::new("joined lamps", joined_lights(), 4096, 1024),
         Case::new("forty lamps", forty_lights(), 8192, 6144),
         Case::new("hidden lamp", hidden_light(), 6144, 1024),
+        Case::new("coincident lamps", coincident_lights(), 8192, 2048),
+        Case::new("coincident in a crowd", coincident_crowd(), 8192, 2048),
     ];
     check(&cases, 0.02, &|scene| Box::new(on_device(scene)));
 }
@@ -173,79 +175,85 @@ fn the_twin_has_one_mean() {
 type Fault = (&'static str, Estimator, &'static str, &'static str);
 
 /// Faults of one scene each.
-fn faults() -> [(&'static str, Scene, &'static [Fault]); 5] {
-    [
-        (
-            "hollow",
-            hollow(2),
-            &[
-                ("light counted twice", Explicit, "select(0.0, 1.0, departure.alone)", "1.0"),
-                (
-                    "a bounce too few",
-                    Explicit,
-                    "return bounce == BOUNCES &&",
-                    "return bounce + 1u == BOUNCES &&",
-                ),
-                ("nothing after gloss", Explicit, "!samples_light_at(hit.sphere))", "false)"),
-                (
-                    "cosine without its density",
-                    Cosine,
-                    "fn weight_diffuse(polar: vec2<f32>) -> f32 {\n    return 1.0;",
-                    "fn weight_diffuse(polar: vec2<f32>) -> f32 {\n    return 2.0 * polar.y;",
-                ),
-                (
-                    "no balance",
-                    Mis,
-                    "fn share_of_sampled(x: f32) -> f32 {\n    return x / (1.0 + x);",
-                    "fn share_of_sampled(x: f32) -> f32 {\n    return x;",
-                ),
-                ("chance forgotten by hits", Mis, " / chance_of(light, point)", ""),
-            ],
-        ),
-        (
-            "in a light",
-            in_light(),
-            &[("a quarter of the sky", Explicit, "Cone(normal, 1.0)", "Cone(normal, 0.5)")],
-        ),
-        (
-            "gloss",
-            gloss(),
-            &[("density of one side", Mis, "(exponent + 1.0) * lobe", "exponent * lobe")],
-        ),
-        (
-            "forty lamps",
-            forty_lights(),
-            &[
-                ("chance forgotten", Explicit, " / pick.chance", ""),
-                (
-                    "cone twice as high",
-                    Explicit,
-                    "min(sine2, 1.0) / (1.0 + sqrt",
-                    "2.0 * min(sine2, 0.5) / (1.0 + sqrt",
-                ),
-            ],
-        ),
-        (
-            "hidden lamp",
-            hidden_light(),
-            &[
-                ("nothing hides", Explicit, "return first < distance;", "return false;"),
-                (
-                    "light seen too near",
-                    Explicit,
-                    "max(q.c, 0.0) / max(root + abs(q.b), 1.0e-30)",
-                    "0.5 * max(q.c, 0.0) / max(root + abs(q.b), 1.0e-30)",
-                ),
-            ],
-        ),
-    ]
-}
+const FAULTS: &[(&str, fn() -> Scene, &[Fault])] = &[
+    (
+        "hollow",
+        || hollow(2),
+        &[
+            ("light counted twice", Explicit, "select(0.0, 1.0, departure.alone)", "1.0"),
+            (
+                "a bounce too few",
+                Explicit,
+                "return bounce == BOUNCES &&",
+                "return bounce + 1u == BOUNCES &&",
+            ),
+            ("nothing after gloss", Explicit, "!samples_light_at(hit.sphere))", "false)"),
+            (
+                "cosine without its density",
+                Cosine,
+                "fn weight_diffuse(polar: vec2<f32>) -> f32 {\n    return 1.0;",
+                "fn weight_diffuse(polar: vec2<f32>) -> f32 {\n    return 2.0 * polar.y;",
+            ),
+            (
+                "no balance",
+                Mis,
+                "fn share_of_sampled(x: f32) -> f32 {\n    return x / (1.0 + x);",
+                "fn share_of_sampled(x: f32) -> f32 {\n    return x;",
+            ),
+            ("chance forgotten by hits", Mis, " / chance_of(light, point)", ""),
+        ],
+    ),
+    (
+        "in a light",
+        in_light,
+        &[("a quarter of the sky", Explicit, "Cone(normal, 1.0)", "Cone(normal, 0.5)")],
+    ),
+    ("gloss", gloss, &[("density of one side", Mis, "(exponent + 1.0) * lobe", "exponent * lobe")]),
+    (
+        "forty lamps",
+        forty_lights,
+        &[
+            ("chance forgotten", Explicit, " / pick.chance", ""),
+            (
+                "cone twice as high",
+                Explicit,
+                "min(sine2, 1.0) / (1.0 + sqrt",
+                "2.0 * min(sine2, 0.5) / (1.0 + sqrt",
+            ),
+        ],
+    ),
+    (
+        "hidden lamp",
+        hidden_light,
+        &[
+            (
+                "nothing hides",
+                Explicit,
+                "return first < distance || earlier <= distance;",
+                "return false;",
+            ),
+            (
+                "light seen too near",
+                Explicit,
+                "max(q.c, 0.0) / max(root + abs(q.b), 1.0e-30)",
+                "0.5 * max(q.c, 0.0) / max(root + abs(q.b), 1.0e-30)",
+            ),
+        ],
+    ),
+    (
+        "coincident",
+        coincident_lights,
+        &[("both of a place seen", Explicit, " || earlier <= distance", "")],
+    ),
+    ("crowd", coincident_crowd, &[("both of a place seen", Mis, " || earlier <= distance", "")]),
+];
 
 #[test]
 fn faults_are_told() {
-    for (name, scene, faults) in faults() {
+    for (name, scene, faults) in FAULTS {
+        let scene = scene();
         let reference = film(&mut on_device(&under(&scene, Implicit)), &[0..1024]);
-        for (fault, estimator, from, to) in faults {
+        for (fault, estimator, from, to) in *faults {
             let mut wrong = mutant(&under(&scene, *estimator), from, to);
             // A sample above its bound tells too.
             let (found, ledger) = trace(&mut wrong, &[0..256]);

@@ -158,7 +158,13 @@ const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
         "unit_float(bits.x), unit_float(bits.y)",
         Judge::Classic,
     ),
-    ("nothing hides", Explicit, "return first < distance;", "return false;", Judge::Classic),
+    (
+        "nothing hides",
+        Explicit,
+        "return first < distance || earlier <= distance;",
+        "return false;",
+        Judge::Classic,
+    ),
     ("everything hides", Explicit, "root + abs(q.b)", "root + q.b", Judge::Classic),
     (
         "half a chance for one lamp",
@@ -227,7 +233,7 @@ const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
     ),
     ("first light always", Explicit, "if u < sum {", "if true {", Judge::Crowd),
     ("walls hide as balls", Explicit, "if i >= scene.factored_count {", "if false {", Judge::Crowd),
-    ("some are not asked", Explicit, "first, i == light)", "first, i >= light)", Judge::Crowd),
+    ("some are not asked", Explicit, "MISS, i == light)", "MISS, i >= light)", Judge::Crowd),
     (
         "no balance for lights",
         Mis,

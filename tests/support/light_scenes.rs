@@ -134,3 +134,30 @@ pub fn hidden_light() -> Scene {
     ];
     picture([0.0, 2.0, 8.0], [0.0, 1.0, 0.0], 2, spheres)
 }
+
+/// Lamps in one place but for less than the device's coordinates tell: in a wall, and in one
+/// another. The first in the file is the one in front. A third lamp stands alone.
+pub fn coincident_lights() -> Scene {
+    let (in_front, behind) = (0.6 + 1e-10, 0.6);
+    let spheres = vec![
+        floor(),
+        sphere([-2.0, 2.0, 0.0], in_front, diffuse(0.5)),
+        sphere([-2.0, 2.0, 0.0], behind, emitter([9.0, 9.0, 9.0])),
+        sphere([0.0, 2.0, 0.0], in_front, emitter([1.0, 2.0, 3.0])),
+        sphere([0.0, 2.0, 0.0], behind, emitter([9.0, 5.0, 1.0])),
+        sphere([2.0, 2.0, 0.0], 0.6, emitter([2.0, 2.0, 2.0])),
+        sphere([0.8, 0.6, 1.0], 0.6, glossy(0.9, 20.0)),
+    ];
+    picture([0.0, 3.0, 7.0], [0.0, 1.0, 0.0], 2, spheres)
+}
+
+/// The same among more spheres than get straight-line code.
+pub fn coincident_crowd() -> Scene {
+    let scene = coincident_lights();
+    let balls = (0..12_u32).map(|i| {
+        let place = [0.9 * f64::from(i % 6) - 2.2, 0.3, 2.0 + 0.9 * f64::from(i / 6)];
+        sphere(place, 0.3, diffuse(0.6))
+    });
+    let spheres = scene.spheres().iter().cloned().chain(balls).collect();
+    picture([0.0, 3.0, 7.0], [0.0, 1.0, 0.0], 2, spheres)
+}
