@@ -16,16 +16,16 @@ const COARSEST: f64 = 1e-6;
 
 /// The finest film scale that holds every sample of the scene.
 ///
-/// With L the brightest radiance, ρ the largest albedo, ρ_d that of diffuse surfaces, and
+/// With L the brightest radiance, ρ the largest albedo, `ρ_d` that of diffuse surfaces, and
 /// K bounces, a sample is at most
 ///
-/// - `implicit`: L·max(1, w)^K, w the largest weight, 2ρ_d or ρ: it is the product of
+/// - `implicit`: L·max(1, w)^K, w the largest weight, 2·`ρ_d` or ρ: it is the product of
 ///   its weights and the radiance of the one light that the path ends on.
 /// - `cosine`: L, as no weight exceeds 1.
 /// - `explicit`: max(L, S + ρL) with S = Σ_{k=1..K} ρ^{k−1}·C the connections and then a light
-///   seen from a glossy surface. A connection is 2ρ_d·h·cosθ·L/chance with h ≤ 1, so
-///   C = 2ρ_d·L for one light. Of several, each has at least half the chance that is
-///   proportional to h·cosθ·L, so C = 4ρ_d·ΣL.
+///   seen from a glossy surface. A connection is 2·`ρ_d`·h·cosθ·L/chance with h ≤ 1, so
+///   C = 2·`ρ_d`·L for one light. Of several, each has at least half the chance that is
+///   proportional to h·cosθ·L, so C = 4·`ρ_d`·ΣL.
 /// - `mis`: max(L, Σ_{k=1..K} ρ^k·L + ρL): the balance heuristic keeps a connection, and a
 ///   light that is hit, below ρL at the vertex that it is seen from.
 ///

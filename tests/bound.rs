@@ -1,6 +1,5 @@
 //! The bound on one sample: by hand, and against samples of scenes made to come near it.
 
-#![expect(clippy::single_range_in_vec_init, reason = "one way of dividing the samples")]
 #![expect(clippy::cast_possible_truncation, reason = "bounds are compared as f32")]
 
 mod support {

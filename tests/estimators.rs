@@ -32,8 +32,8 @@ const POWER: f64 = 4.0;
 /// Fewer tests than this are made with one table.
 const TESTS: f64 = 1000.0;
 
-/// Relative bias that rounding to `f32` may give one channel of the image: MAX_BIAS of
-/// `verify` is ten times as much.
+/// Relative bias that rounding to `f32` may give one channel of the image: a tenth of
+/// what `verify` allows.
 const ROUNDING: f64 = 1e-4;
 
 const OTHERS: [Estimator; 3] = [Cosine, Explicit, Mis];
@@ -174,8 +174,10 @@ fn the_twin_has_one_mean() {
 /// what takes its place.
 type Fault = (&'static str, Estimator, &'static str, &'static str);
 
-/// Faults of one scene each.
-const FAULTS: &[(&str, fn() -> Scene, &[Fault])] = &[
+/// A scene and the faults that it tells.
+type Faulty = (&'static str, fn() -> Scene, &'static [Fault]);
+
+const FAULTS: &[Faulty] = &[
     (
         "hollow",
         || hollow(2),

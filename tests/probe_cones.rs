@@ -79,12 +79,12 @@ impl View {
         let to_centre = shape - p;
         let d = to_centre.length();
         let of_d = U + 1.5 * U + ROOT;
-        let sine = size / d;
+        let ratio2 = (size / d).powi(2);
         // (d - r) takes d's error whole, and (d + r)/d² < 2/d; four more roundings.
         let cosine2 = (d - size) * (d + size) / (d * d);
         let of_cosine2 = 2.0 * of_d + cosine2 * (2.0 * of_d + 5.0 * U + DIVISION);
         let of_sine2 = 2.0 * (of_d + DIVISION) + U;
-        truth(to_centre / d, sine * sine, of_sine2, cosine2, of_cosine2)
+        truth(to_centre / d, ratio2, of_sine2, cosine2, of_cosine2)
     }
 
     /// From the function of the sphere as it was rounded: |g|² and 2F with the errors of

@@ -167,8 +167,7 @@ fn densities_agree_with_f64() {
     let (mut worst, mut judged, mut rejected) = ([0.0_f64; EXPONENTS.len()], 0, 0);
     for (e, [weight, density, ..]) in events.iter().zip(found) {
         let exponent = f64::from(EXPONENTS[e.surface]);
-        let [normal, incoming, direction] =
-            [e.normal, e.incoming, e.direction].map(|v| v.as_dvec3());
+        let [normal, incoming, direction] = [e.normal, e.incoming, e.direction].map(Vec3::as_dvec3);
         let truth = evaluate_glossy(normal, incoming, direction, exponent);
         assert!((f64::from(weight) - truth.weight).abs() <= 4.0 * U, "{e:?}: weight {weight}");
         let mirror = (incoming - 2.0 * incoming.dot(normal) * normal).normalize();

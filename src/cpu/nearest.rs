@@ -42,6 +42,6 @@ pub(super) fn occluded(
     others.any(|(i, sphere)| {
         let q = factored(ray, sphere.center, sphere.radius);
         let other = distance_to(q, sphere, leaving == i);
-        other < distance || (other == distance && i < light)
+        if i < light { other <= distance } else { other < distance }
     })
 }
