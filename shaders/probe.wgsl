@@ -92,6 +92,79 @@ fn probe_scatter(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(s.direction, s.weight));
 }
 
+// Row: u, v, height of a cone (0: cosine-weighted hemisphere), -. Result: direction about
+// +z, sine of its polar angle.
+@compute @workgroup_size(64)
+fn probe_polar(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let row = input_floats(id.x);
+    let polar = select(polar_cone(row.x, row.z), polar_cosine(row.x), row.z == 0.0);
+    let direction = around(vec3<f32>(0.0, 0.0, 1.0), polar, row.y);
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(direction, polar.x));
+}
+
+// Rows in threes: position and form (0 factored, 1 anchored); position and size of the
+// shape; its offset. Result: axis and height of the cone.
+@compute @workgroup_size(64)
+fn probe_cone(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let position = input_floats(3u * id.x);
+    let shape = input_floats(3u * id.x + 1u);
+    let offset = input_floats(3u * id.x + 2u).x;
+    var cone = cone_factored(position.xyz, shape.xyz, shape.w);
+    if position.w == 1.0 {
+        cone = cone_anchored(position.xyz, shape.xyz, offset, shape.w);
+    }
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(cone.axis, cone.height));
+}
+
+// Row: u, x, -, -. Result: -log(1 - u), exp(-x), 0, 0.
+@compute @workgroup_size(64)
+fn probe_exp(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let row = input_floats(id.x);
+    outputs[id.x] = bitcast<vec4<u32>>(
+        vec4<f32>(minus_log_complement(row.x), exp_minus(row.y), 0.0, 0.0));
+}
+
+// Rows in threes: normal; incoming direction with the packed sphere, whose exponent
+// counts; another direction. Result: weight and density of the lobe there.
+@compute @workgroup_size(64)
+fn probe_evaluate(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let normal = input_floats(3u * id.x);
+    let incoming = input_floats(3u * id.x + 1u);
+    let direction = input_floats(3u * id.x + 2u);
+    let worth = evaluate(inputs[3u * id.x + 1u].w, normal.xyz, incoming.xyz, direction.xyz);
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(worth.weight, worth.density, 0.0, 0.0));
+}
+
+// Rows as for probe_scatter. Result: density that the direction was drawn with, density
+// that it has when it was not, versine of its angle from the lobe's axis, 0.
+@compute @workgroup_size(64)
+fn probe_density(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let normal = input_floats(3u * id.x);
+    let incoming = input_floats(3u * id.x + 1u);
+    let u = input_floats(3u * id.x + 2u).xy;
+    let sphere = inputs[3u * id.x + 1u].w;
+    let s = scatter(sphere, normal.xyz, incoming.xyz, u);
+    let worth = evaluate(sphere, normal.xyz, incoming.xyz, s.direction);
+    let t = 1.0 - polar_phong(u.x, scene.spheres[sphere].exponent).y;
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(s.density, worth.density, t, 0.0));
+}
+
+// Rows in pairs: position with the light whose chance is asked; normal. The sample's
+// pixel is the row's number. Result: that chance; the light that is picked, its chance.
+@compute @workgroup_size(64)
+fn probe_pick(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let point = SurfacePoint(input_floats(2u * id.x).xyz, input_floats(2u * id.x + 1u).xyz);
+    let chance = chance_of(inputs[2u * id.x].w, point);
+    let pick = pick_light(point, SampleKey(id.x, 0u, 0u), 0u);
+    outputs[id.x] = vec4<u32>(bitcast<u32>(chance), pick.light, bitcast<u32>(pick.chance), 0u);
+}
+
 // Row: pixel (x, y), then where on it. Result: direction of the camera ray.
 @compute @workgroup_size(64)
 fn probe_camera(@builtin(global_invocation_id) id: vec3<u32>) {

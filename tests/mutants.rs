@@ -7,144 +7,16 @@ mod support {
     pub mod gpu;
     #[allow(dead_code, reason = "of all judges, the exact one")]
     pub mod judge;
+    pub mod kernel_judge;
+    pub mod light_scenes;
     pub mod scenes;
     pub mod tracers;
 }
 
-use candor::estimate::pair;
-use candor::film::Film;
-use candor::scene::Scene;
-use candor::verify::{ALPHA, MAX_BIAS};
-use std::sync::OnceLock;
-use support::judge::is_exactly;
-use support::scenes::{classic, diffuse, emitter, glossy, seen, size, sphere, with_seed};
-use support::tracers::{film, kernel, trace, twin, with_kernel};
+use candor::scene::Estimator::{self, Cosine, Explicit, Implicit, Mis};
+use support::kernel_judge::Judge;
 
-/// What tells a wrong kernel from the right one.
-#[derive(Debug, Clone, Copy)]
-enum Judge {
-    /// The twin's picture of the same samples: the classic scene.
-    Classic,
-    /// The same inside a hollow sphere.
-    Hollow,
-    /// The same under glossy spheres and on a glossy floor.
-    Gloss,
-    /// The same with a glossy ball in a shell of light.
-    Furnace,
-    /// Every sample is one radiance: a shell of dim light, in a scene with a lamp so
-    /// bright that the film's words carry.
-    Shell,
-    /// Every sample is one radiance: a lamp and a wall in the same place.
-    Coincident,
-    /// One range of samples in one call and in parts, across index 2^32.
-    Divisions,
-    /// Pictures of two seeds.
-    Seeds,
-}
-
-const SHELL: [f32; 3] = [0.3, 0.7, 0.011];
-
-fn shell() -> Scene {
-    let spheres = vec![
-        sphere([0.0, 0.0, 0.0], 2.0, emitter(SHELL.map(f64::from))),
-        sphere([0.0, 9.0, 0.0], 1.0, emitter([1e8; 3])),
-    ];
-    seen([0.5, 0.0, 0.0], [0.0, 1.0, 0.0], size(5, 3), 2, spheres)
-}
-
-fn coincident() -> Scene {
-    // The lamp is in front by less than the device's coordinates tell.
-    let spheres = vec![
-        sphere([0.0, 0.0, 0.0], 1.0 + 1e-12, emitter([3.0; 3])),
-        sphere([0.0, 0.0, 0.0], 1.0, diffuse(0.5)),
-    ];
-    seen([0.0, 0.0, 3.0], [0.0, 0.0, 0.0], size(5, 3), 2, spheres)
-}
-
-fn hollow() -> Scene {
-    let spheres = vec![
-        sphere([0.0, 0.0, 0.0], 5.0, diffuse(0.7)),
-        sphere([0.0, 2.5, 0.0], 1.5, emitter([6.0, 5.0, 4.0])),
-        sphere([-1.5, -1.0, -2.0], 1.2, glossy(0.9, 20.0)),
-    ];
-    seen([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], size(32, 32), 3, spheres)
-}
-
-fn furnace() -> Scene {
-    let spheres = vec![
-        sphere([0.0, 0.0, 0.0], 1.0, glossy(0.9, 2.0)),
-        sphere([0.0, 0.0, 0.0], 9.0, emitter([2.0, 1.0, 0.5])),
-    ];
-    seen([0.0, 0.0, 3.0], [0.0, 0.0, 0.0], size(32, 32), 1, spheres)
-}
-
-fn gloss() -> Scene {
-    let mut spheres = vec![
-        sphere([0.0, 5.0, 0.0], 2.5, emitter([5.0, 5.0, 5.0])),
-        sphere([0.0, -101.0, 0.0], 100.0, glossy(0.8, 2.0)),
-    ];
-    for (x, n) in [(-3.0, 1.0), (-1.0, 5.0), (1.0, 20.0), (3.0, 1e4)] {
-        spheres.push(sphere([x, 0.0, 0.0], 1.0, glossy(0.95, n)));
-    }
-    seen([0.0, 2.0, 9.0], [0.0, 0.5, 0.0], size(32, 32), 3, spheres)
-}
-
-impl Judge {
-    fn scene(self) -> Scene {
-        match self {
-            Self::Classic | Self::Seeds => classic(size(32, 32)),
-            Self::Hollow => hollow(),
-            Self::Gloss => gloss(),
-            Self::Furnace => furnace(),
-            Self::Shell => shell(),
-            Self::Coincident => coincident(),
-            Self::Divisions => classic(size(3, 2)),
-        }
-    }
-
-    /// Whether the kernel passes.
-    fn accepts(self, change: &dyn Fn(&str) -> String) -> bool {
-        let scene = self.scene();
-        let mut tracer = with_kernel(&scene, &change(&kernel(&scene)));
-        match self {
-            Self::Classic | Self::Hollow | Self::Gloss | Self::Furnace => {
-                let (found, ledger) = trace(&mut tracer, &[0..256]);
-                let paired = pair(&found, self.twin());
-                ledger.count == 0 && paired.is_within(MAX_BIAS, ALPHA)
-            }
-            Self::Shell => is_exactly(&film(&mut tracer, &[0..300]), SHELL, 300),
-            Self::Coincident => {
-                let centre = film(&mut tracer, &[0..64]);
-                is_exactly(&only(&centre, 7), [3.0; 3], 64)
-            }
-            Self::Divisions => {
-                let edge = 1_u64 << 32;
-                let whole = film(&mut tracer, &[edge - 9..edge + 32]);
-                let mut again = with_kernel(&scene, &change(&kernel(&scene)));
-                whole == film(&mut again, &[edge..edge + 32, edge - 9..edge])
-            }
-            Self::Seeds => {
-                let other = with_seed(&scene, 1);
-                let mut other = with_kernel(&other, &change(&kernel(&other)));
-                film(&mut tracer, &[0..16]).pixels() != film(&mut other, &[0..16]).pixels()
-            }
-        }
-    }
-
-    /// The twin's film of this scene, traced once.
-    fn twin(self) -> &'static Film {
-        static FILMS: [OnceLock<Film>; 4] = [const { OnceLock::new() }; 4];
-        FILMS[self as usize].get_or_init(|| film(&mut twin(&self.scene()), &[0..256]))
-    }
-}
-
-/// One pixel of a film as a film.
-fn only(film: &Film, pixel: usize) -> Film {
-    let mut one = Film::awaiting(size(1, 1), film.scale(), film.samples().clone());
-    one.pixels_mut()[0] = film.pixels()[pixel];
-    one
-}
-
+/// Of `implicit`: what is wrong, what stands in the kernel, and what takes its place.
 const MUTANTS: &[(&str, &str, &str, Judge)] = &[
     ("no cosine", "2.0 * polar.y", "2.0", Judge::Classic),
     (
@@ -170,7 +42,7 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
     ("way out", "(root - q.b) / q.leading", "(root + q.b) / q.leading", Judge::Hollow),
     ("far wall forgotten", "2.0 * abs(q.b) / q.leading", "abs(q.b) / q.leading", Judge::Hollow),
     ("the last of equal distances", "t < best.distance", "t <= best.distance", Judge::Coincident),
-    ("n for n + 1", "(exponent + 1.0)", "(exponent)", Judge::Gloss),
+    ("n for n + 1", "/ (exponent + 1.0)", "/ exponent", Judge::Gloss),
     (
         "lobe under the horizon counted",
         "max(dot(normal, direction), 0.0)",
@@ -178,7 +50,12 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
         Judge::Furnace,
     ),
     ("mirror direction", "incoming - 2.0 * dot", "incoming - 1.9 * dot", Judge::Gloss),
-    ("sine of the lobe", "sqrt(t * (2.0 - t))", "sqrt(t * (1.0 - t))", Judge::Gloss),
+    (
+        "sine of the lobe",
+        "1.0));\n    return vec2<f32>(sqrt(t * (2.0 - t))",
+        "1.0));\n    return vec2<f32>(sqrt(t * (1.0 - t))",
+        Judge::Gloss,
+    ),
     (
         "sine of the hemisphere",
         "sqrt((1.0 - u) * (1.0 + u))",
@@ -236,39 +113,213 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
     ("seed ignored", "| block, scene.seed)", "| block, 0u)", Judge::Seeds),
 ];
 
+/// Of the estimators beside `implicit`.
+const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
+    (
+        "sine of the cosine-weighted",
+        Cosine,
+        "vec2<f32>(sqrt(u), sqrt(1.0 - u))",
+        "vec2<f32>(u, sqrt(1.0 - u * u))",
+        Judge::Classic,
+    ),
+    (
+        "cosine counted twice",
+        Cosine,
+        "f32 {\n    return 1.0;",
+        "f32 {\n    return polar.y;",
+        Judge::Classic,
+    ),
+    ("flat cone", Explicit, "/ (1.0 + sqrt(max(cosine2, 0.0)))", "/ 2.0", Judge::Classic),
+    (
+        "cosine of the half angle",
+        Explicit,
+        "(d - radius) * (d + radius)",
+        "(d - radius) * (d - radius)",
+        Judge::Classic,
+    ),
+    (
+        "cone denser in the middle",
+        Explicit,
+        "let t = u * height;",
+        "let t = u * u * height;",
+        Judge::Classic,
+    ),
+    (
+        "light under the horizon",
+        Explicit,
+        "2.0 * max(dot(normal, direction), 0.0)",
+        "2.0 * abs(dot(normal, direction))",
+        Judge::Classic,
+    ),
+    (
+        "light's numbers used twice",
+        Explicit,
+        "unit_float(bits.z), unit_float(bits.w)",
+        "unit_float(bits.x), unit_float(bits.y)",
+        Judge::Classic,
+    ),
+    (
+        "nothing hides",
+        Explicit,
+        "return first < distance || earlier <= distance;",
+        "return false;",
+        Judge::Classic,
+    ),
+    ("everything hides", Explicit, "root + abs(q.b)", "root + q.b", Judge::Classic),
+    (
+        "half a chance for one lamp",
+        Explicit,
+        "return Pick(LIGHT, 1.0);",
+        "return Pick(LIGHT, 0.5);",
+        Judge::Classic,
+    ),
+    ("lamp in view dark", Explicit, "select(0.0, 1.0, departure.alone)", "0.0", Judge::Classic),
+    ("light counted twice", Explicit, "select(0.0, 1.0, departure.alone)", "1.0", Judge::Classic),
+    (
+        "a connection too few",
+        Explicit,
+        "if bounce == BOUNCES {",
+        "if bounce + 1u >= BOUNCES {",
+        Judge::Classic,
+    ),
+    (
+        "last gloss forgotten",
+        Explicit,
+        "bounce == BOUNCES && !departure.alone",
+        "bounce == BOUNCES",
+        Judge::Classic,
+    ),
+    ("nothing after gloss", Explicit, "!samples_light_at(hit.sphere))", "false)", Judge::Hollow),
+    (
+        "lights sampled at gloss too",
+        Explicit,
+        "return scene.spheres[sphere].kind == KIND_DIFFUSE;",
+        "return true;",
+        Judge::Hollow,
+    ),
+    ("sides of the sun", Explicit, "g * -inverseSqrt(g2)", "g * inverseSqrt(g2)", Judge::Sun),
+    ("offset of the sun", Explicit, "position) + 2.0 * offset;", "position) + offset;", Judge::Sun),
+    ("the sun's curvature", Explicit, "curvature * twice_f / g2", "twice_f / g2", Judge::Sun),
+    ("a light from inside", Explicit, "return Cone(normal, 1.0);", "return outer;", Judge::Inside),
+    ("far side of a light", Explicit, "exit(q, false)", "exit(q, true)", Judge::Inside),
+    ("chance forgotten", Explicit, " / pick.chance", "", Judge::Lamps),
+    (
+        "brightness alone",
+        Explicit,
+        "return cone.height * cosine * max(",
+        "return max(",
+        Judge::Lamps,
+    ),
+    (
+        "never evenly",
+        Explicit,
+        "0.5 * (potential / total + even)",
+        "potential / total",
+        Judge::Lamps,
+    ),
+    (
+        "side of the cone",
+        Explicit,
+        "cos_theta * cos_sigma + sines",
+        "cos_theta * cos_sigma - sines",
+        Judge::Lamps,
+    ),
+    (
+        "pick with the camera's numbers",
+        Explicit,
+        "PICK_BLOCKS: u32 = 128u",
+        "PICK_BLOCKS: u32 = 0u",
+        Judge::Lamps,
+    ),
+    ("first light always", Explicit, "if u < sum {", "if true {", Judge::Crowd),
+    ("walls hide as balls", Explicit, "if i >= scene.factored_count {", "if false {", Judge::Crowd),
+    ("some are not asked", Explicit, "MISS, i == light)", "MISS, i >= light)", Judge::Crowd),
+    (
+        "no balance for lights",
+        Mis,
+        "fn share_of_sampled(x: f32) -> f32 {\n    return x / (1.0 + x);",
+        "fn share_of_sampled(x: f32) -> f32 {\n    return x;",
+        Judge::Classic,
+    ),
+    (
+        "no balance for hits",
+        Mis,
+        "select(x / (1.0 + x), 1.0, departure.alone)",
+        "1.0",
+        Judge::Classic,
+    ),
+    (
+        "light in view balanced",
+        Mis,
+        "select(x / (1.0 + x), 1.0, departure.alone)",
+        "x / (1.0 + x)",
+        Judge::Classic,
+    ),
+    (
+        "density of the uniform",
+        Mis,
+        "f32 {\n    return 2.0 * polar.y;",
+        "f32 {\n    return 1.0;",
+        Judge::Classic,
+    ),
+    ("hits forget the chance", Mis, " / chance_of(light, point)", "", Judge::Lamps),
+    (
+        "lobe drawn without its cosine",
+        Mis,
+        "min((1.0 - u) / max(polar.y, 1.0 - u), 1.0)",
+        "(1.0 - u)",
+        Judge::Lobes,
+    ),
+    ("n for n + 1", Mis, "(exponent + 1.0) * lobe", "exponent * lobe", Judge::Lobes),
+    ("versine twice", Mis, "0.5 * dot(off, off)", "dot(off, off)", Judge::Lobes),
+    ("lobe behind the mirror", Mis, "select(density, 0.0, t >= 1.0)", "density", Judge::Lobes),
+    (
+        "gloss as chalk",
+        Mis,
+        "select(diffuse.density, glossy.density, is_glossy)",
+        "diffuse.density",
+        Judge::Hollow,
+    ),
+    (
+        "weight of gloss",
+        Mis,
+        "select(diffuse.weight, glossy.weight, is_glossy)",
+        "diffuse.weight",
+        Judge::Hollow,
+    ),
+];
+
+/// Whether the judge accepts the kernel with `to` in place of `from`; says so.
+fn survives(name: &str, estimator: Estimator, from: &str, to: &str, judge: Judge) -> bool {
+    let change = |kernel: &str| {
+        assert_eq!(kernel.matches(from).count(), 1, "{name}: {from:?} in the kernel");
+        kernel.replace(from, to)
+    };
+    let survives = judge.accepts(estimator, &change);
+    let (judge, verdict) = (format!("{judge:?}"), if survives { "SURVIVES" } else { "rejected" });
+    println!("{name:<36}{:<10}{judge:<12}{verdict}", estimator.name());
+    survives
+}
+
 #[test]
 fn every_mutant_is_rejected() {
-    let mut survivors = Vec::new();
-    for &(name, from, to, judge) in MUTANTS {
-        let change = |kernel: &str| {
-            assert_eq!(kernel.matches(from).count(), 1, "{name}: {from:?} in the kernel");
-            kernel.replace(from, to)
-        };
-        let survives = judge.accepts(&change);
-        println!(
-            "{name:<36}{:<12}{}",
-            format!("{judge:?}"),
-            if survives { "SURVIVES" } else { "rejected" }
-        );
-        if survives {
-            survivors.push(name);
-        }
-    }
+    let ours = MUTANTS.iter().map(|&(name, from, to, judge)| (name, Implicit, from, to, judge));
+    let survivors: Vec<&str> = ours
+        .chain(OTHER_MUTANTS.iter().copied())
+        .filter(|&(name, estimator, from, to, judge)| survives(name, estimator, from, to, judge))
+        .map(|mutant| mutant.0)
+        .collect();
     assert!(survivors.is_empty(), "accepted: {survivors:?}");
 }
 
 #[test]
 fn the_right_kernel_is_accepted() {
-    for judge in [
-        Judge::Classic,
-        Judge::Hollow,
-        Judge::Gloss,
-        Judge::Furnace,
-        Judge::Shell,
-        Judge::Coincident,
-        Judge::Divisions,
-        Judge::Seeds,
-    ] {
-        assert!(judge.accepts(&str::to_owned), "{judge:?}");
+    let asked = MUTANTS.iter().map(|mutant| (Implicit, mutant.3));
+    let mut accepted = Vec::new();
+    for (estimator, judge) in asked.chain(OTHER_MUTANTS.iter().map(|mutant| (mutant.1, mutant.4))) {
+        if !accepted.contains(&(estimator, judge)) {
+            assert!(judge.accepts(estimator, &str::to_owned), "{estimator:?} {judge:?}");
+            accepted.push((estimator, judge));
+        }
     }
 }

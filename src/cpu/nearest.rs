@@ -29,7 +29,8 @@ pub(super) fn nearest(scene: &PreparedScene, ray: &Ray, leaving: Option<usize>) 
     (best.distance < MISS).then_some(best)
 }
 
-/// Whether a sphere other than `light` stands before `distance`.
+/// Whether a sphere other than `light` is seen first: one that is nearer than `distance`, or
+/// as near and earlier in the scene file.
 pub(super) fn occluded(
     scene: &PreparedScene,
     ray: &Ray,
@@ -40,6 +41,7 @@ pub(super) fn occluded(
     let mut others = scene.spheres.iter().enumerate().filter(|&(i, _)| i != light);
     others.any(|(i, sphere)| {
         let q = factored(ray, sphere.center, sphere.radius);
-        distance_to(q, sphere, leaving == i) < distance
+        let other = distance_to(q, sphere, leaving == i);
+        if i < light { other <= distance } else { other < distance }
     })
 }

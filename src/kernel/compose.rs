@@ -263,11 +263,12 @@ fn places(forms: &[Form]) -> Vec<(&'static str, u32)> {
         .collect()
 }
 
-/// Whether anything stands before a light, in straight-line code; where there is only one
-/// light, it is not asked.
+/// Whether anything hides a light, in straight-line code, in the order of the scene file;
+/// where there is only one light, it is not asked. At equal distances the first in the file
+/// is seen, here as in the search, so what stands before the light in the file hides it there.
 fn unrolled_occluded(forms: &[Form], only: Option<u32>) -> String {
-    let asked = places(forms).into_iter().filter(|&(_, i)| Some(i) != only);
-    let steps: String = asked
+    let steps: String = places(forms)
+        .into_iter()
         .map(|(form, i)| {
             let arguments = match form {
                 "factored" => format!("shape_{i}.position, shape_{i}.size"),
@@ -275,17 +276,21 @@ fn unrolled_occluded(forms: &[Form], only: Option<u32>) -> String {
             };
             let distance = format!("distance_to({form}(ray, {arguments}), {i}u, leaving)");
             match only {
+                Some(light) if light == i => "    earlier = first;\n".to_owned(),
                 Some(_) => format!("    first = min(first, {distance});\n"),
-                None => {
-                    format!("    first = min(first, select({distance}, MISS, light == {i}u));\n")
-                }
+                None => format!(
+                    "    earlier = select(earlier, first, light == {i}u);\n    \
+                     first = min(first, select({distance}, MISS, light == {i}u));\n"
+                ),
             }
         })
         .collect();
     format!(
-        "// Whether a sphere other than `light` stands before `distance`.\n\
+        "// Whether a sphere other than `light` is seen first: one that is nearer than\n\
+         // `distance`, or as near and earlier in the scene file.\n\
          fn occluded(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool {{\n    \
-         var first = MISS;\n{steps}    return first < distance;\n}}\n"
+         var first = MISS;\n    var earlier = MISS;\n{steps}    \
+         return first < distance || earlier <= distance;\n}}\n"
     )
 }
 
