@@ -3,7 +3,8 @@
 //! Data flows one way, and no module knows what stands to its right:
 //!
 //! [`scene`] → [`viewpoint`], [`effects`], [`bound`] → [`film`] → [`kernel`] → [`gpu`] or
-//! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`render`], [`verify`] → [`report`] → [`cli`]
+//! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`pilot`], [`render`], [`verify`] → [`report`] →
+//! [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and
@@ -17,6 +18,7 @@ pub mod estimate;
 pub mod film;
 pub mod gpu;
 pub mod kernel;
+pub mod pilot;
 pub mod render;
 pub mod report;
 pub mod scene;

@@ -59,8 +59,9 @@ pub(super) struct CommonArgs {
     #[arg(long, value_name = "S")]
     pub seed: Option<u32>,
     /// Estimator: implicit, cosine, explicit or mis; default: the scene's, or implicit.
+    /// `render` also takes auto, which tries all of them first and takes the cheapest.
     #[arg(long, value_name = "E", value_parser = parse_estimator)]
-    pub estimator: Option<Estimator>,
+    pub estimator: Option<EstimatorChoice>,
     /// Most scatterings of one path; default: the scene's, or 2.
     #[arg(long, value_name = "K")]
     pub bounces: Option<u32>,
@@ -138,6 +139,14 @@ pub(super) struct DiffArgs {
     pub json: bool,
 }
 
+/// How paths should be built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum EstimatorChoice {
+    /// The cheapest for this scene on this device.
+    Auto,
+    Named(Estimator),
+}
+
 /// What should render.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum DeviceChoice {
@@ -181,8 +190,12 @@ fn parse_samples(text: &str) -> Result<Range<u64>, String> {
     }
 }
 
-fn parse_estimator(text: &str) -> Result<Estimator, String> {
-    text.parse().map_err(|allowed: Invalid| format!("expected {allowed}"))
+fn parse_estimator(text: &str) -> Result<EstimatorChoice, String> {
+    if text == "auto" {
+        return Ok(EstimatorChoice::Auto);
+    }
+    let named = text.parse().map(EstimatorChoice::Named);
+    named.map_err(|allowed: Invalid| format!("expected {allowed}, or \"auto\""))
 }
 
 fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {

@@ -9,6 +9,7 @@ mod environment;
 mod interrupt;
 mod memory;
 mod output;
+mod pilot;
 mod progress;
 mod render;
 mod setup;

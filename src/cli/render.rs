@@ -1,10 +1,11 @@
 //! `candor render`: from a scene file to pictures.
 
-use super::args::{DeviceChoice, RenderArgs};
+use super::args::{DeviceChoice, EstimatorChoice, RenderArgs};
 use super::output::Outputs;
 use super::progress::Reporter;
 use super::{
-    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup, streams, units,
+    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, pilot, refuse, setup, streams,
+    units,
 };
 use crate::bound::sample_scale;
 use crate::estimate::{FIRST_LOOK, Summary, summarize};
@@ -15,7 +16,7 @@ use crate::scene::{MAX_SPP, Scene};
 use crate::tracer::{Description, Ledger};
 use serde::Serialize;
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     let scene = setup::load(&args.common)?;
@@ -27,13 +28,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     if plan.time.is_none() && plan.target_error.is_none() {
         outputs.check_films(plan.samples.end - plan.samples.start)?;
     }
-    let finished = if scene.has_lights() {
-        trace(args, &scene, &plan)?
-    } else {
-        darkness(args, &scene, &plan)?
-    };
-    let picture = Picture::develop(&finished.film, !scene.has_lights());
-    let provenance = finished.provenance(args, &scene);
+    let finished =
+        if scene.has_lights() { trace(args, scene, plan)? } else { darkness(args, scene, &plan)? };
+    let picture = Picture::develop(&finished.film, !finished.scene.has_lights());
+    let provenance = finished.provenance(args);
     interrupt::writing_begins();
     let files = outputs.write(&picture, &provenance, args.exposure)?;
     streams::results(&finished.report(args, &files))?;
@@ -64,6 +62,8 @@ fn plan(args: &RenderArgs, scene: &Scene) -> Plan {
 
 /// A render that is over.
 struct Finished {
+    /// What was rendered, with the estimator that was used.
+    scene: Scene,
     film: Film,
     ledger: Ledger,
     summary: Summary,
@@ -101,20 +101,24 @@ impl Log {
     }
 }
 
-fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refusal> {
+fn trace(args: &RenderArgs, mut scene: Scene, mut plan: Plan) -> Result<Finished, Refusal> {
     let common = &args.common;
     let interrupt = interrupt::watch()?;
     let chosen = choose::choose(&common.device, common.threads)?;
     let needed = memory::needed(scene.size(), chosen.on_processor());
     memory::check(scene.size(), needed)?;
-    let mut tracer = chosen.tracer(scene)?;
-    let description = tracer.describe();
-
     let mut log = Log::create(args)?;
-    let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), plan);
+    let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), &plan);
     if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
         reporter.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
     }
+    if common.estimator == Some(EstimatorChoice::Auto) {
+        let started = Instant::now();
+        scene = pilot::choose_estimator(scene, &chosen, interrupt, &reporter)?;
+        plan.time = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
+    }
+    let mut tracer = chosen.tracer(&scene)?;
+    let description = tracer.describe();
     reporter.message(&format!(
         "{}x{} pixels on {} ({}), {} of memory",
         scene.size().width(),
@@ -124,7 +128,7 @@ fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refu
         units::bytes(needed),
     ));
     let audience = if log.file.is_some() { Audience::Log } else { reporter.audience() };
-    let outcome = render(tracer.as_mut(), plan, interrupt, audience, &mut |progress| {
+    let outcome = render(tracer.as_mut(), &plan, interrupt, audience, &mut |progress| {
         log.observe(&progress);
         reporter.observe(progress);
     });
@@ -134,11 +138,12 @@ fn trace(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refu
     let ledger = tracer.ledger()?;
     let summary = summarize(&film);
     log.add(&summary, outcome.elapsed);
-    Ok(Finished { summary, film, ledger, outcome, tracer: description, log_error: log.error })
+    let log_error = log.error;
+    Ok(Finished { scene, summary, film, ledger, outcome, tracer: description, log_error })
 }
 
 /// A scene without lights is a picture of exact zeros; nothing needs to be traced.
-fn darkness(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, Refusal> {
+fn darkness(args: &RenderArgs, scene: Scene, plan: &Plan) -> Result<Finished, Refusal> {
     let on_host = true;
     memory::check(scene.size(), memory::needed(scene.size(), on_host))?;
     let mut samples = SampleRanges::default();
@@ -151,7 +156,7 @@ fn darkness(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, R
     Ok(Finished {
         summary,
         log_error: log.error,
-        film: Film::awaiting(scene.size(), sample_scale(scene), samples),
+        film: Film::awaiting(scene.size(), sample_scale(&scene), samples),
         ledger: Ledger::default(),
         outcome: Outcome { stop: Stop::Done, elapsed: Duration::ZERO },
         tracer: Description {
@@ -159,6 +164,7 @@ fn darkness(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, R
             driver: format!("candor {}", env!("CARGO_PKG_VERSION")),
             software: true,
         },
+        scene,
     })
 }
 
@@ -167,6 +173,7 @@ fn darkness(args: &RenderArgs, scene: &Scene, plan: &Plan) -> Result<Finished, R
 struct Json<'a> {
     device: &'a str,
     driver: &'a str,
+    estimator: &'a str,
     width: u32,
     height: u32,
     spp: u64,
@@ -198,14 +205,14 @@ impl Finished {
         (self.seconds() > 0.0).then(|| samples / self.seconds())
     }
 
-    fn provenance(&self, args: &RenderArgs, scene: &Scene) -> Provenance {
+    fn provenance(&self, args: &RenderArgs) -> Provenance {
         let name = args.common.scene.file_name().unwrap_or_default();
         Provenance {
             scene_file: name.to_string_lossy().into_owned(),
-            scene_hash: scene.hash(),
-            estimator: scene.settings().estimator().name(),
-            bounces: scene.settings().bounces(),
-            seed: scene.settings().seed(),
+            scene_hash: self.scene.hash(),
+            estimator: self.scene.settings().estimator().name(),
+            bounces: self.scene.settings().bounces(),
+            seed: self.scene.settings().seed(),
             samples: self.film.samples().clone(),
             scale: self.film.scale(),
             tracer: self.tracer.clone(),
@@ -239,6 +246,7 @@ impl Finished {
         let json = Json {
             device: &self.tracer.device,
             driver: &self.tracer.driver,
+            estimator: self.scene.settings().estimator().name(),
             width: self.film.size().width(),
             height: self.film.size().height(),
             spp: self.summary.samples,

@@ -1,11 +1,12 @@
 //! From the scene file and the command line to the scene that is rendered.
 
-use super::args::CommonArgs;
+use super::args::{CommonArgs, EstimatorChoice};
 use super::{Refusal, in_colour, refuse};
 use crate::bound;
 use crate::scene::{self, Scene};
 
-/// Loads the scene and applies what the command line says otherwise.
+/// Loads the scene and applies what the command line says otherwise; where it leaves the
+/// choice of an estimator to a pilot, the scene's stays for now.
 pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
     let mut scene = scene::load(&args.scene).map_err(|error| Refusal(error.render(in_colour())))?;
     if let Some(size) = args.size {
@@ -22,8 +23,12 @@ pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
         };
     }
     settings = settings.with_seed(args.seed.unwrap_or(settings.seed()));
-    settings = settings.with_estimator(args.estimator.unwrap_or(settings.estimator()));
+    if let Some(EstimatorChoice::Named(estimator)) = args.estimator {
+        settings = settings.with_estimator(estimator);
+    }
     let scene = scene.with_settings(settings);
-    bound::check(&scene)?;
+    if args.estimator != Some(EstimatorChoice::Auto) {
+        bound::check(&scene)?;
+    }
     Ok(scene)
 }

@@ -1,6 +1,6 @@
 //! `candor verify`: this machine's device against the f64 twin.
 
-use super::args::{DeviceChoice, VerifyArgs};
+use super::args::{DeviceChoice, EstimatorChoice, VerifyArgs};
 use super::progress::Reporter;
 use super::{
     DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup, streams,
@@ -16,6 +16,9 @@ use std::sync::atomic::AtomicBool;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     let common = &args.common;
+    if common.estimator == Some(EstimatorChoice::Auto) {
+        return refuse("verify checks one estimator; --estimator auto is for render");
+    }
     let scene = setup::load(common)?;
     let spp = scene.settings().spp();
     if spp < 2 {

@@ -87,12 +87,30 @@ impl Spread {
         let chaos = 2.0 * l.sqrt() * (self.squares.sqrt() + unseen) + 2.0 * l * deviation.powi(2);
         let mean_square = (self.variance + chaos) / all;
 
-        let slack = l * bound * bound / (2.0 * self.pixels * (n - 1.0));
-        let variance = ((self.variance() + slack).sqrt() + slack.sqrt()).powi(2);
+        let variance = self.variance_bound(samples, l);
         let below = (2.0 * l * variance / all).sqrt() + l * bound / (3.0 * all);
         let mean = self.luminance() - below;
         // A variance of fewer than two samples is NaN, and so is then the mean.
         if mean > 0.0 { mean_square.sqrt() / mean } else { f64::INFINITY }
+    }
+
+    /// Upper bound on the mean variance of one sample over the squared mean luminance, after
+    /// `samples` samples per pixel, wrong with probability `doubt`; `None` for a picture that is
+    /// black so far. Light that no sample has found yet is included (Maurer & Pontil, COLT
+    /// 2009, theorem 10, pooled over pixels).
+    #[must_use]
+    pub fn relative_variance_bound(&self, samples: u64, doubt: f64) -> Option<f64> {
+        let variance = self.variance_bound(samples, -doubt.ln());
+        let luminance = self.luminance();
+        (luminance > 0.0).then(|| variance / (luminance * luminance))
+    }
+
+    /// The variance's bound, wrong with probability exp(−`l`).
+    fn variance_bound(&self, samples: u64, l: f64) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "at most 2^32 samples")]
+        let degrees = self.pixels * (samples as f64 - 1.0);
+        let slack = l * self.sample_bound * self.sample_bound / (2.0 * degrees);
+        ((self.variance() + slack).sqrt() + slack.sqrt()).powi(2)
     }
 
     /// The count of samples per pixel from which on the bound is at or below `target`, as the

@@ -1,6 +1,7 @@
 //! The program as its users meet it: the real binary, run in fresh folders.
 
 mod arguments;
+mod auto;
 mod candor;
 mod devices;
 mod diff;

@@ -1,0 +1,122 @@
+//! Which estimator a pilot takes, and that it is not taken in by light that was not found.
+
+mod support {
+    pub mod scenes;
+}
+
+use candor::cpu::CpuTracer;
+use candor::estimate::{Summary, summarize};
+use candor::film::Film;
+use candor::pilot::{Trial, cheapest, trial_size, try_out};
+use candor::scene::{Estimator, Scene};
+use candor::tracer::{Description, Ledger, TraceError, Tracer};
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+use support::scenes::{classic, diffuse, emitter, seen, size, sphere};
+
+fn tracers(scene: &Scene) -> Vec<(Estimator, Box<dyn Tracer>)> {
+    let tracer = |estimator| {
+        let scene = scene.clone().with_settings(scene.settings().with_estimator(estimator));
+        let twin = CpuTracer::new(&scene, None).expect("threads");
+        (estimator, Box::new(twin) as Box<dyn Tracer>)
+    };
+    Estimator::ALL.map(tracer).into()
+}
+
+fn trials(scene: &Scene) -> Vec<Trial> {
+    try_out(&mut tracers(scene), &AtomicBool::new(false)).expect("the twin traces")
+}
+
+/// A faint lamp that fills a quarter of the picture, and a bright one so small that one path in
+/// ten million hits it by itself.
+fn speck() -> Scene {
+    let spheres = vec![
+        sphere([0.0, -1e4, 0.0], 1e4, diffuse(0.8)),
+        sphere([0.0, 2.0, -4.0], 1.5, emitter([0.01; 3])),
+        sphere([1.0, 2.0, 0.0], 1e-3, emitter([1e6; 3])),
+    ];
+    seen([0.0, 1.5, 5.0], [0.0, 1.0, 0.0], size(24, 24), 1, spheres)
+}
+
+/// On the classic scene light sampling has a twentieth of the variance at about twice the
+/// time per sample: no noise of a clock turns that around.
+#[test]
+fn light_sampling_is_cheapest_on_the_classic_scene() {
+    let found = cheapest(&trials(&classic(size(64, 64))));
+    assert!(matches!(found, Some(Estimator::Explicit | Estimator::Mis)), "{found:?}");
+}
+
+/// Without having hit the lamp, `implicit` sees a faint picture with hardly any noise. By what
+/// it saw it would be taken; the bound on what it may have missed says otherwise.
+#[test]
+fn light_that_was_not_found_is_not_taken_for_quiet() {
+    let trials = trials(&speck());
+    for trial in &trials {
+        println!("{trial:?}");
+    }
+    let blind = |trial: &&Trial| !trial.estimator.samples_lights();
+    let chosen = cheapest(&trials).expect("some trial has found light");
+    let bounds = |trial: &Trial| trial.variance_bound.expect("light was found");
+    let least = |all: Vec<f64>| all.into_iter().fold(f64::INFINITY, f64::min);
+    let missed = least(trials.iter().filter(blind).map(bounds).collect());
+    let seen = least(trials.iter().filter(|t| !blind(t)).map(bounds).collect());
+    assert!(chosen.samples_lights(), "{chosen:?}");
+    assert!(missed > seen, "{missed} against {seen}");
+    // At a third of the time per sample, by what they saw.
+    let saw = |trial: &Trial| trial.variance.expect("light was found");
+    let naive = least(trials.iter().filter(blind).map(saw).collect());
+    let light = least(trials.iter().filter(|t| !blind(t)).map(saw).collect());
+    assert!(naive / 3.0 < light, "{naive} against {light}");
+}
+
+/// A tracer of black pictures.
+struct Dark(Film);
+
+impl Tracer for Dark {
+    fn add_samples(&mut self, range: Range<u64>) -> Result<(), TraceError> {
+        Ok(self.0.claim(range)?)
+    }
+
+    fn film(&mut self) -> Result<Film, TraceError> {
+        Ok(self.0.clone())
+    }
+
+    fn ledger(&mut self) -> Result<Ledger, TraceError> {
+        Ok(Ledger::default())
+    }
+
+    fn describe(&self) -> Description {
+        Description { device: "dark".to_owned(), driver: String::new(), software: true }
+    }
+}
+
+/// A trial that has found no light has no variance, however often it looked.
+#[test]
+fn black_trials_are_never_taken() {
+    let scene = classic(size(8, 8));
+    let film = Film::new(scene.size(), candor::bound::sample_scale(&scene));
+    let mut tracers = tracers(&scene);
+    tracers.truncate(1);
+    tracers.push((Estimator::Cosine, Box::new(Dark(film.clone()))));
+    let trials = try_out(&mut tracers, &AtomicBool::new(false)).expect("both trace");
+    assert_eq!(trials[1].variance, None);
+    assert_eq!(trials[1].variance_bound, None);
+    assert_eq!(cheapest(&trials), Some(Estimator::Implicit));
+    assert_eq!(cheapest(&trials[1..]), None);
+    let Summary { relative_error, .. } = summarize(&film);
+    assert_eq!(relative_error, None);
+}
+
+#[test]
+fn trials_are_small_and_keep_the_shape() {
+    let table = [
+        ((512, 512), (256, 256)),
+        ((64, 48), (64, 48)),
+        ((8192, 2048), (512, 128)),
+        ((65_535, 1), (65_535, 1)),
+        ((60_000, 60_000), (256, 256)),
+    ];
+    for ((width, height), (to_width, to_height)) in table {
+        assert_eq!(trial_size(size(width, height)), size(to_width, to_height));
+    }
+}
