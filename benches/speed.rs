@@ -1,18 +1,17 @@
 //! Speed and memory on this machine's device, interleaved and as medians:
-//! `cargo bench --bench speed [-- --rounds N --device NAME]`.
+//! `cargo bench --bench speed [-- --rounds N --device NAME --estimator E]`.
 //!
 //! Rows are rounds of the same work one after another, so that a machine that slows
 //! down slows all of them; ratios are taken within a round. Where g++ is there, the
-//! yardstick `benches/limit.cpp` (the same estimator by hand in AVX2) runs beside.
+//! yardstick `benches/limit.cpp` (`implicit` by hand in AVX2) runs beside that estimator.
 
 #![allow(clippy::cast_precision_loss, reason = "rates and ratios for show")]
 
 use candor::bound::sample_scale;
 use candor::cpu::CpuTracer;
-use candor::effects::Effects;
 use candor::gpu::{Adapter, Gpu, GpuTracer, adapters};
 use candor::kernel::{self, Kernel, Nearest};
-use candor::scene::{self, ImageSize, Scene};
+use candor::scene::{self, Estimator, ImageSize, Scene};
 use candor::tracer::Tracer;
 use candor::viewpoint::Viewpoint;
 use std::path::{Path, PathBuf};
@@ -32,9 +31,14 @@ fn main() {
         .find(|a| wanted.as_ref().is_none_or(|name| a.name().to_lowercase().contains(name)))
         .expect("a device is needed");
     let scene = scene::load(&root().join("scenes/two-spheres.toml")).expect("the classic scene");
-    println!("{} ({}), {rounds} rounds", adapter.name(), adapter.driver());
+    let estimator = option("--estimator").map_or(scene.settings().estimator(), |name| {
+        name.parse().expect("--estimator takes implicit, cosine, explicit or mis")
+    });
+    let settings = scene.settings().with_estimator(estimator);
+    let scene = scene.with_settings(settings);
+    println!("{} ({}), {}, {rounds} rounds", adapter.name(), adapter.driver(), estimator.name());
 
-    let limit = build_limit();
+    let limit = if estimator == Estimator::Implicit { build_limit() } else { None };
     let mut rows = rows(&scene, &adapter);
     for round in 0..rounds {
         for row in &mut rows {
@@ -94,18 +98,14 @@ fn rows(scene: &Scene, adapter: &Adapter) -> Vec<Row> {
     let small = scene.clone().with_size(ImageSize::new(16, 16).expect("a size"));
     let viewpoint = Viewpoint::of(scene);
     let packed = kernel::pack(scene, &viewpoint, sample_scale(scene)).expect("it fits");
-    let kernel = Kernel {
-        size: scene.size(),
-        bounces: scene.settings().bounces(),
-        effects: Effects::of(scene, &viewpoint),
-        nearest: Nearest::of(&packed.forms),
-    };
+    let kernel = Kernel::of(scene, &viewpoint, &packed);
     let with =
         |wgsl: &str| GpuTracer::with_kernel(scene, gpu(), &packed.scene, wgsl).expect("a tracer");
     let looped = Kernel { nearest: Nearest::Loop, ..kernel.clone() };
     vec![
         Row::new("512x512, exact film", GpuTracer::new(scene, gpu()).expect("fits"), scene, SPP),
         Row::new("512x512, plain f32 sum", with(&plain_sum(&kernel.wgsl())), scene, SPP),
+        Row::new("512x512, no squares", with(&without_squares(&kernel.wgsl())), scene, SPP),
         Row::new("512x512, loop over the spheres", with(&looped.wgsl()), scene, SPP),
         Row::new("16x16", GpuTracer::new(&small, gpu()).expect("fits"), &small, SPP * 1024),
         Row::new("512x512, CPU twin (f64)", CpuTracer::new(scene, None).expect("fits"), scene, 8),
@@ -125,6 +125,17 @@ fn plain_sum(wgsl: &str) -> String {
     }";
     assert_eq!(wgsl.matches(exact).count(), 1, "the kernel adds a sample in one place");
     wgsl.replace(exact, plain)
+}
+
+/// The kernel with the exact film but for the squares, from which the error bars come.
+fn without_squares(wgsl: &str) -> String {
+    let squared = "    let squared = square(luminance(r, g, b));\n";
+    let added =
+        "    carries |= add_word(word + 11u, squared.z, add_pair(word + 9u, squared.xy)) << 12u;\n";
+    for text in [squared, added] {
+        assert_eq!(wgsl.matches(text).count(), 1, "the film adds squares in one place");
+    }
+    wgsl.replace(squared, "").replace(added, "")
 }
 
 fn print_rates(rows: &[Row]) {

@@ -67,9 +67,9 @@ pub fn cheapest(trials: &[Trial]) -> Option<Estimator> {
     reason = "sides that shrink stay in range"
 )]
 pub fn trial_size(size: ImageSize) -> ImageSize {
-    let shrink = (PIXELS / f64::from(size.pixels())).sqrt().min(1.0);
-    let side = |side: u32| ((f64::from(side) * shrink).round() as u32).max(1);
-    ImageSize::new(side(size.width()), side(size.height())).unwrap_or(size)
+    let factor = (PIXELS / f64::from(size.pixels())).sqrt().min(1.0);
+    let shrunk = |side: u32| ((f64::from(side) * factor).round() as u32).max(1);
+    ImageSize::new(shrunk(size.width()), shrunk(size.height())).unwrap_or(size)
 }
 
 /// Tries the tracers in turns, so that a machine that gets faster or slower does so for all;
