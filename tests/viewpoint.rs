@@ -233,7 +233,7 @@ fn effects_are_what_the_surfaces_are() {
     assert_eq!(effects(lamp), (false, false, false));
 }
 
-/// §6 of DESIGN.md by hand: 10·(2·0.75)² and the rounding's share, so that the next power
+/// §7 of DESIGN.md by hand: 10·(2·0.75)² and the rounding's share, so that the next power
 /// of two above 22.5 is 2⁵ and the shift 64 - 5.
 #[test]
 fn the_bound_is_the_product_of_the_largest_weights() {
