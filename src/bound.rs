@@ -26,8 +26,8 @@ const COARSEST: f64 = 1e-6;
 ///   seen from a glossy surface. A connection is 2βh·cosθ·L/chance with h ≤ 1, so
 ///   C = 2βL for one light. Of several, each has at least half the chance that is
 ///   proportional to h·cosθ·L, so C = 4β·ΣL.
-/// - `mis`: max(L, Σ_{k=1..K} ρ^k·L + ρL): the balance heuristic keeps a connection, and a
-///   light that is hit, below ρL at the vertex that it is seen from.
+/// - `mis`: max(L, Σ_{k=1..K} ½ρ^k·L + ρL): the power heuristic keeps a connection below ½ρL
+///   at its vertex, and a light that is hit below ρL.
 ///
 /// (DESIGN.md, "The bound on one sample".)
 #[must_use]
@@ -93,7 +93,7 @@ impl Bounds {
     /// The bound on one connection to a light, over the throughput before it.
     fn connection(&self, estimator: Estimator) -> f64 {
         match (estimator, self.lights) {
-            (Estimator::Mis, _) => self.albedo * self.brightest,
+            (Estimator::Mis, _) => 0.5 * self.albedo * self.brightest,
             (_, (_, 1)) => 2.0 * self.diffuse * self.brightest,
             (_, (sum, _)) => 4.0 * self.diffuse * sum,
         }

@@ -46,15 +46,15 @@ fn bounds_by_hand() {
         // 2·0.75·10 at each of two vertices, 0.75 before the second; then 0.75·10.
         (&one, Explicit, 2, 15.0 + 0.75 * 15.0 + 7.5),
         (&one, Explicit, 0, 10.0),
-        // 0.75·10 at the first, 0.75²·10 at the second, and a light that is hit.
-        (&one, Mis, 2, 7.5 + 5.625 + 7.5),
+        // Half of 0.75·10 at the first, of 0.75²·10 at the second, and a light that is hit.
+        (&one, Mis, 2, 3.75 + 2.8125 + 7.5),
         // 4·0.75·(10 + 2), 0.9 before the second.
         (&both, Explicit, 2, 36.0 + 0.9 * 36.0 + 9.0),
-        (&both, Mis, 1, 9.0 + 9.0),
+        (&both, Mis, 1, 4.5 + 9.0),
         (&both, Implicit, 2, 10.0 * 1.5 * 1.5),
         // No chalk, no connection.
         (&mirrors, Explicit, 5, 10.0),
-        (&mirrors, Mis, 2, 9.0 + 8.1 + 9.0),
+        (&mirrors, Mis, 2, 4.5 + 4.05 + 9.0),
     ];
     for (scene, estimator, bounces, bound) in expected {
         let found = f64::from(sample_scale(&under(scene, estimator, bounces)).bound());
@@ -114,14 +114,14 @@ fn samples_come_near_their_bound_and_stay_below() {
         ("chalk under a sky", sky(chalk), Cosine, 1, 0.999),
         // 2hcosθ of 2 + 1: the light after a glossy surface, which is not here, is counted.
         ("chalk under a sky", sky(chalk), Explicit, 1, 0.65),
-        // 2cosθ/(2cosθ + 1) for both ways, each bounded by 1.
-        ("chalk under a sky", sky(chalk), Mis, 1, 0.65),
-        // 11/(11 + 1) for both.
-        ("gloss under a sky", sky(glossy(1.0, 10.0)), Mis, 1, 0.85),
+        // x/(1 + x²) of a light, at most ½, and x²/(1 + x²) of a hit, x = 2cosθ: 1.3 of 1.5.
+        ("chalk under a sky", sky(chalk), Mis, 1, 0.84),
+        // The same with x up to 11.
+        ("gloss under a sky", sky(glossy(1.0, 10.0)), Mis, 1, 0.95),
         // 2cosθ over a chance of ½, of 4·2 + 1.
         ("chalk in two shells", shells(chalk), Explicit, 1, 0.43),
-        // 2cosθ/(2cosθ + ½) for both ways: 0.8.
-        ("chalk in two shells", shells(chalk), Mis, 1, 0.78),
+        // x = 4cosθ: ½ + 16/17 of 1.5.
+        ("chalk in two shells", shells(chalk), Mis, 1, 0.93),
         ("hollow", hollow(8), Explicit, 8, 0.01),
         ("hollow", hollow(8), Mis, 8, 0.1),
         ("in a light", in_light(), Explicit, 3, 0.08),

@@ -197,9 +197,9 @@ const FAULTS: &[Faulty] = &[
                 "fn weight_diffuse(polar: vec2<f32>) -> f32 {\n    return 2.0 * polar.y;",
             ),
             (
-                "no balance",
+                "no heuristic",
                 Mis,
-                "fn share_of_sampled(x: f32) -> f32 {\n    return x / (1.0 + x);",
+                "fn share_of_sampled(x: f32) -> f32 {\n    return x / (1.0 + x * x);",
                 "fn share_of_sampled(x: f32) -> f32 {\n    return x;",
             ),
             ("chance forgotten by hits", Mis, " / chance_of(light, point)", ""),

@@ -195,7 +195,7 @@ fn densities_agree_with_f64() {
     assert!(judged > 1 << 17 && rejected > 1 << 14, "{judged} judged, {rejected} rejected");
 }
 
-/// `scatter` and `evaluate` must mean the same density, or the balance heuristic's shares of
+/// `scatter` and `evaluate` must mean the same density, or the power heuristic's shares of
 /// one direction do not add up to one. The direction is off by its three roundings where it
 /// stands near the axis, and by a frame (24) and an azimuth (19) as far as it leaves it; its
 /// versine by 15 (`probe_sampling`).

@@ -37,9 +37,9 @@ fn samples_light_at(estimator: Estimator, surface: Surface) -> bool {
 }
 
 /// Share of a sampled light, from the ratio p/q of the densities of its direction, the
-/// BRDF's over the light's: all of it, or the balance heuristic's.
+/// BRDF's over the light's: all of it, or the power heuristic's.
 fn share_of_sampled(estimator: Estimator, x: f64) -> f64 {
-    if estimator == Estimator::Mis { x / (1.0 + x) } else { x }
+    if estimator == Estimator::Mis { x / (1.0 + x * x) } else { x }
 }
 
 /// Share of a light that a path hit by itself.
@@ -53,7 +53,7 @@ fn share_of_hit(scene: &PreparedScene, light: usize, departure: &Departure) -> f
     let point = &departure.point;
     let solid_angle = TAU * cone_of(&scene.spheres[light], point).height;
     let x = departure.density * solid_angle / chance_of(scene, light, point);
-    x / (1.0 + x)
+    x * x / (1.0 + x * x)
 }
 
 /// What one sampled light sends over a vertex, per unit of albedo.

@@ -14,8 +14,8 @@ pub enum Estimator {
     /// Next-event estimation: lights are sampled by solid angle at diffuse surfaces; light
     /// that a path hits counts straight from the camera and from glossy surfaces.
     Explicit,
-    /// Lights and the BRDF are sampled at every surface and combined with the balance
-    /// heuristic (Veach & Guibas, SIGGRAPH 1995, eq. 14).
+    /// Lights and the BRDF are sampled at every surface and combined with the power
+    /// heuristic (Veach & Guibas, SIGGRAPH 1995, section 3.2).
     Mis,
 }
 
