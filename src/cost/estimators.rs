@@ -35,6 +35,9 @@ pub struct EstimatorCost {
     pub slope: Option<Slope>,
     /// Those errors over the stated ones.
     pub agreement: Option<Agreement>,
+    /// Time for an error over that of the cheapest estimator, from the same rounds; `None`
+    /// where either is unknown or without variance.
+    pub beside_cheapest: Option<Measured>,
     /// Predicted times to [`TARGETS`]; empty where the noise is not known.
     pub predictions: Vec<Prediction>,
 }
@@ -47,6 +50,9 @@ pub struct Noise {
     pub variance: Measured,
     /// 1/(variance × seconds per sample), in 1/s; `None` where there is no variance.
     pub efficiency: Option<Measured>,
+    /// Error of the variance, on a log scale.
+    #[serde(skip)]
+    error: LogError,
 }
 
 /// The time to an error.
@@ -128,7 +134,7 @@ impl Contestant {
         Ok(())
     }
 
-    fn finish(mut self, pixels: f64) -> Result<EstimatorCost, CostError> {
+    fn finish(&mut self, pixels: f64) -> Result<EstimatorCost, CostError> {
         let invalid = self.timed.tracer().ledger()?.count;
         if invalid > 0 {
             let estimator = self.estimator.name();
@@ -140,7 +146,7 @@ impl Contestant {
         let noise = variance.map(|(value, error)| {
             let combined = LogError::of_product(&[error, time_error]);
             let efficiency = (value > 0.0).then(|| combined.interval(1.0 / value / seconds));
-            (Noise { variance: error.interval(value), efficiency }, combined)
+            (Noise { variance: error.interval(value), efficiency, error }, combined)
         });
         let predictions = noise.map_or(Vec::new(), |(noise, error)| {
             let frame = seconds * pixels;
@@ -156,6 +162,7 @@ impl Contestant {
             slope: fit(&convergence),
             agreement: noise.and_then(|(noise, _)| agreement(&convergence, noise.variance.value)),
             convergence,
+            beside_cheapest: None,
             predictions,
         })
     }
@@ -211,5 +218,35 @@ pub(super) fn pilot(
     slot.check(shortest(contestants.iter().map(|contestant| contestant.timed.pace())))?;
     take_turns(&mut contestants, slot, watch, Contestant::round)?;
     let pixels = f64::from(scene.size().pixels());
-    contestants.into_iter().map(|contestant| contestant.finish(pixels)).collect()
+    let costs = contestants.iter_mut().map(|contestant| contestant.finish(pixels));
+    let mut costs = costs.collect::<Result<Vec<_>, _>>()?;
+    compare(&mut costs, &contestants);
+    Ok(costs)
+}
+
+/// Sets the prices beside the cheapest one. Their ratio is known better than each of them, as
+/// the machine's drift cancels within a round.
+fn compare(costs: &mut [EstimatorCost], contestants: &[Contestant]) {
+    let Some(best) = cheapest(costs) else { return };
+    let noise = |cost: &EstimatorCost| Some((cost.noise?.variance, cost.noise?.error));
+    let Some((unit, unit_error)) = noise(&costs[best]).filter(|(v, _)| v.value > 0.0) else {
+        return;
+    };
+    for place in (0..costs.len()).filter(|&place| place != best) {
+        let Some((variance, error)) = noise(&costs[place]) else { continue };
+        let (ratio, spread) = contestants[place].timed.beside(&contestants[best].timed);
+        let error = LogError::of_product(&[error, unit_error, spread]);
+        let price = error.interval(ratio * variance.value / unit.value);
+        costs[place].beside_cheapest = Some(price);
+    }
+}
+
+/// The place of the estimator that is cheapest for its error, where any error is known; of
+/// several without variance, the fastest.
+pub(super) fn cheapest(costs: &[EstimatorCost]) -> Option<usize> {
+    let known = costs
+        .iter()
+        .enumerate()
+        .filter_map(|(place, cost)| Some((place, cost.price()?, cost.seconds_per_sample.value)));
+    known.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2))).map(|(place, ..)| place)
 }

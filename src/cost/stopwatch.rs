@@ -119,7 +119,13 @@ impl Timed {
         per_sample(&self.rounds)
     }
 
-    /// The same as an interval.
+    /// Seconds per sample over those of another, which took turns with it: a ratio in each round, so
+    /// that what slowed both does not count.
+    pub fn beside(&self, other: &Self) -> (f64, LogError) {
+        ratio(&self.rounds, &other.rounds)
+    }
+
+    /// Seconds per sample with their interval.
     pub fn per_sample_interval(&self) -> Measured {
         let (value, error) = self.per_sample();
         error.interval(value)
@@ -138,6 +144,12 @@ fn per_sample(rounds: &[f64]) -> (f64, LogError) {
     let (_, deviation) = mean_and_deviation(sorted.iter().map(|seconds| seconds.ln()));
     let error = (std::f64::consts::PI / 2.0).sqrt() * deviation / (count as f64).sqrt();
     (median, LogError { error, freedom: count as f64 - 1.0 })
+}
+
+/// The median ratio of rounds that were taken in turns.
+fn ratio(ours: &[f64], theirs: &[f64]) -> (f64, LogError) {
+    let ratios: Vec<f64> = ours.iter().zip(theirs).map(|(ours, theirs)| ours / theirs).collect();
+    per_sample(&ratios)
 }
 
 /// A share of the budget: when it began and how long it may take.
@@ -218,7 +230,7 @@ pub(super) fn shortest(paces: impl Iterator<Item = f64>) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::per_sample;
+    use super::{per_sample, ratio};
 
     /// One round of twice the time moves the mean by 10 %, and the median hardly.
     #[test]
@@ -228,5 +240,16 @@ mod tests {
         assert!((median - 1.0).abs() < 0.01 && error.error > 0.05, "{median} {error:?}");
         rounds[9] = 1.0;
         assert!(per_sample(&rounds).1.error < 0.01);
+    }
+
+    /// A machine that becomes three times slower: neither rate is known well, their ratio is.
+    #[test]
+    fn drift_cancels_in_a_ratio() {
+        let drift = |round: u32| 1.0 + f64::from(round) / 5.0;
+        let ours: Vec<f64> = (0..11).map(|round| 1.3 * drift(round)).collect();
+        let theirs: Vec<f64> = (0..11).map(drift).collect();
+        let (value, error) = ratio(&ours, &theirs);
+        assert!((value - 1.3).abs() < 1e-12 && error.error < 1e-12, "{value} {error:?}");
+        assert!(per_sample(&ours).1.error > 0.1);
     }
 }

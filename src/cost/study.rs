@@ -1,6 +1,6 @@
 //! One study from start to end: the phases in their order, and what came of them.
 
-use super::estimators::{EstimatorCost, by_name, pilot};
+use super::estimators::{EstimatorCost, by_name, cheapest, pilot};
 use super::ladder::{Ladder, Rung, ladder};
 use super::plan::{Phase, Plan};
 use super::race::race;
@@ -62,11 +62,7 @@ impl Study {
     /// The estimator that is cheapest for its error, where any error is known.
     #[must_use]
     pub fn cheapest(&self) -> Option<&EstimatorCost> {
-        let known = self.estimators.iter().filter(|cost| cost.price().is_some());
-        known.min_by(|a, b| {
-            let key = |cost: &EstimatorCost| (cost.price(), cost.seconds_per_sample.value);
-            key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
-        })
+        cheapest(&self.estimators).map(|place| &self.estimators[place])
     }
 
     fn leave_out(&mut self, what: impl Into<String>, why: &impl ToString) {

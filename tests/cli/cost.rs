@@ -42,7 +42,9 @@ fn a_study_on_a_device() {
     let rungs = json["ladder"].as_array().expect("a ladder");
     let bounces: Vec<_> = rungs.iter().map(|rung| rung["bounces"].as_u64()).collect();
     assert_eq!(bounces, [0, 1, 2, 3, 4, 8].map(Some));
-    rungs.iter().for_each(|rung| check_interval(&rung["seconds_per_sample"]));
+    for rung in rungs {
+        check_interval(&rung["seconds_per_sample"]);
+    }
     assert!(rungs[..5].iter().all(|rung| rung["missing"]["value"].is_number()), "{rungs:?}");
     check_interval(&json["twin"]["slowdown"]);
     // The device's f32 and f64 differ by rounding alone.
@@ -77,7 +79,9 @@ fn check_estimators(estimators: &Value) {
         let predictions = cost["predictions"].as_array().expect("predictions");
         let targets: Vec<_> = predictions.iter().map(|p| p["target"].as_f64()).collect();
         assert_eq!(targets, [0.1, 0.03, 0.01, 0.003, 0.001].map(Some));
-        predictions.iter().for_each(|prediction| check_interval(&prediction["seconds"]));
+        for prediction in predictions {
+            check_interval(&prediction["seconds"]);
+        }
     }
 }
 

@@ -120,6 +120,9 @@ fn estimator(rows: &mut Rows, cost: &EstimatorCost) -> Result<(), String> {
     if let Some(agreement) = &cost.agreement {
         rows.measured(labels("realised_over_stated_error", "1"), &agreement.ratio)?;
     }
+    if let Some(ratio) = &cost.beside_cheapest {
+        rows.measured(labels("time_beside_cheapest", "1"), ratio)?;
+    }
     for point in &cost.convergence {
         let at = point.samples.to_string();
         let labels = ["convergence", name, &at, "relative_error", "1"];

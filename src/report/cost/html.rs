@@ -118,6 +118,9 @@ fn estimators(study: &Study) -> Markup {
                 relative(&noise.variance, &significant(noise.variance.value, 3))
             }),
             efficiency.map_or_else(unproven, |e| relative(&e, &format!("{:.2e}", e.value))),
+            cost.beside_cheapest.map_or("—".to_owned(), |ratio| {
+                relative(&ratio, &format!("×{}", significant(ratio.value, 3)))
+            }),
             cost.slope.map_or("—".to_owned(), |slope| {
                 format!("{:.3} … {:.3}", slope.slope.low, slope.slope.high)
             }),
@@ -130,6 +133,7 @@ fn estimators(study: &Study) -> Markup {
         "Msamples/s",
         "relative variance",
         "efficiency in 1/s",
+        "time beside cheapest",
         "slope (must be −½)",
         "unproven pixels",
         "samples per pixel",

@@ -40,11 +40,6 @@ fn which_estimator(study: &Study) -> Answer {
                     --budget, or a smaller --size.";
         return Answer { question, text: text.to_owned(), warning: true };
     };
-    let price = best.price().unwrap_or(0.0);
-    let overlaps = |cost: &EstimatorCost| {
-        let efficiency = |cost: &EstimatorCost| cost.noise.and_then(|noise| noise.efficiency);
-        matches!((efficiency(cost), efficiency(best)), (Some(c), Some(b)) if c.high >= b.low)
-    };
     let mut others: Vec<&EstimatorCost> =
         study.estimators.iter().filter(|cost| cost.estimator != best.estimator).collect();
     others.sort_by(|a, b| {
@@ -53,10 +48,12 @@ fn which_estimator(study: &Study) -> Answer {
     });
     let others = others.iter().map(|cost| {
         let name = cost.estimator.name();
-        match cost.price() {
-            None => format!("{name} is unproven"),
-            Some(_) if overlaps(cost) => format!("{name} may be as good"),
-            Some(other) => format!("{name} takes {} times as long", significant(other / price, 2)),
+        match (cost.price(), cost.beside_cheapest) {
+            (None, _) => format!("{name} is unproven"),
+            (Some(_), Some(ratio)) if ratio.low > 1.0 => {
+                format!("{name} takes {} times as long", significant(ratio.value, 2))
+            }
+            _ => format!("{name} may be as good"),
         }
     });
     let others = others.collect::<Vec<_>>().join(", ");
@@ -208,8 +205,8 @@ pub(super) fn notes() -> [String; 5] {
     [
         format!(
             "Intervals are two-sided at {} and cover this run's noise alone: rounds take turns, \
-             so that drift of the machine hits all estimators alike, but another machine, or this \
-             one on a busy day, has other times.",
+             so that drift of the machine hits all estimators alike and their ratios are known \
+             better than each alone; another machine, or this one on a busy day, has other times.",
             rounded_percent(CONFIDENCE, 2)
         ),
         "The error is the relative RMS error: the root of the pixels' mean squared standard \

@@ -196,7 +196,8 @@ fn axes(curves: &[Curve]) -> Option<(Axis, Axis)> {
     let seconds = (first - 0.15, cheapest.max(dearest).max(first + 1.0) + 0.15);
     let errors = (smallest - 0.12, largest.max(smallest + 1.0) + 0.12);
     let x = Axis::of_logs("seconds of tracing", seconds, false, seconds_label);
-    let y = Axis::of_logs("relative RMS error", errors, true, |y| rounded_percent(10_f64.powf(y), 1));
+    let y =
+        Axis::of_logs("relative RMS error", errors, true, |y| rounded_percent(10_f64.powf(y), 1));
     Some((x, y))
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Axis, Failure, Pen, colour};
 use crate::cost::{Rung, Study};
-use crate::units::percent;
+use crate::units::rounded_percent;
 use plotters::coord::Shift;
 use plotters::prelude::{
     Circle, Color, DashedLineSeries, DrawingArea, DrawingBackend, EmptyElement, LineSeries,
@@ -91,8 +91,9 @@ fn axes(study: &Study, places: &[Place]) -> (Axis, Axis) {
     };
     let deepest = study.ladder.last().map_or(0, |rung| rung.bounces);
     let name = format!("light missing beside {deepest} bounces");
-    let y =
-        Axis::of_logs(&name, (lowest.max(-6.0) - 0.3, 0.1), true, |y| rounded_percent(10_f64.powf(y), 1));
+    let y = Axis::of_logs(&name, (lowest.max(-6.0) - 0.3, 0.1), true, |y| {
+        rounded_percent(10_f64.powf(y), 1)
+    });
     (x, y)
 }
 
