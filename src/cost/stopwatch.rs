@@ -10,8 +10,11 @@ use std::time::{Duration, Instant};
 /// Fewest rounds that are timed; their spread is the interval of the rate.
 const MIN_ROUNDS: usize = 3;
 
-/// Rounds that a phase is divided into.
+/// Rounds that a phase is divided into at least, where samples are short enough.
 const ROUNDS: f64 = 16.0;
+
+/// Longest turn in seconds: what disturbs a machine for longer hits all in turns alike.
+const LONGEST_TURN: f64 = 0.1;
 
 /// Warm-up ends when a call takes this share of a turn: what came before has compiled the
 /// kernel and found the device's pace.
@@ -197,7 +200,7 @@ impl Slot {
     /// Seconds that each of `items` may take in one turn.
     #[expect(clippy::cast_precision_loss, reason = "a handful of items")]
     pub fn turn(&self, items: usize) -> f64 {
-        self.length.as_secs_f64() / ROUNDS / items as f64
+        (self.length.as_secs_f64() / ROUNDS / items as f64).min(LONGEST_TURN)
     }
 }
 
