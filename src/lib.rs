@@ -3,8 +3,8 @@
 //! Data flows one way, and no module knows what stands to its right:
 //!
 //! [`scene`] → [`viewpoint`], [`effects`], [`bound`] → [`film`] → [`kernel`] → [`gpu`] or
-//! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`pilot`], [`render`], [`verify`] → [`report`] →
-//! [`cli`]
+//! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`] →
+//! [`report`] → [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and
@@ -12,6 +12,7 @@
 
 pub mod bound;
 pub mod cli;
+pub mod cost;
 pub mod cpu;
 pub mod effects;
 pub mod estimate;
@@ -23,5 +24,6 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod tracer;
+mod units;
 pub mod verify;
 pub mod viewpoint;

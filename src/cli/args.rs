@@ -1,5 +1,6 @@
 //! Arguments, as typed.
 
+use crate::cost::Plan;
 use crate::film::SampleRanges;
 use crate::scene::{Estimator, ImageSize, Invalid, MAX_SPP};
 use clap::{Args, Parser, Subcommand};
@@ -33,6 +34,10 @@ pub(super) enum Command {
     Verify(VerifyArgs),
     /// Compares two EXR pictures with their error bars; exits 1 if they differ by more.
     Diff(DiffArgs),
+    /// Measures what accuracy costs in time on this device: a table, cost.csv, plots
+    /// (cost.svg, cost.png) and a report to read (cost.html).
+    #[command(allow_negative_numbers = true)]
+    Cost(CostArgs),
     /// Lists what can render here.
     Devices,
 }
@@ -42,6 +47,7 @@ impl Command {
         match self {
             Self::Render(args) => args.common.threads,
             Self::Verify(args) => args.common.threads,
+            Self::Cost(args) => args.common.threads,
             Self::Diff(_) | Self::Devices => None,
         }
     }
@@ -52,16 +58,9 @@ impl Command {
 pub(super) struct CommonArgs {
     /// Scene file (TOML).
     pub scene: PathBuf,
-    /// Samples per pixel; default: the scene's [render] spp, or 256.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SPP))]
-    pub spp: Option<u64>,
     /// Seed of the random numbers; default: the scene's, or 0.
     #[arg(long, value_name = "S")]
     pub seed: Option<u32>,
-    /// Estimator: implicit, cosine, explicit or mis; default: the scene's, or implicit.
-    /// `render` also takes auto, which tries all of them first and takes the cheapest.
-    #[arg(long, value_name = "E", value_parser = parse_estimator)]
-    pub estimator: Option<EstimatorChoice>,
     /// Most scatterings of one path; default: the scene's, or 2.
     #[arg(long, value_name = "K")]
     pub bounces: Option<u32>,
@@ -83,10 +82,24 @@ pub(super) struct CommonArgs {
     pub json: bool,
 }
 
+/// What every command takes that renders with one estimator.
+#[derive(Debug, Default, Args)]
+pub(super) struct SamplingArgs {
+    /// Samples per pixel; default: the scene's [render] spp, or 256.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SPP))]
+    pub spp: Option<u64>,
+    /// Estimator: implicit, cosine, explicit or mis; default: the scene's, or implicit.
+    /// `render` also takes auto, which tries all of them first and takes the cheapest.
+    #[arg(long, value_name = "E", value_parser = parse_estimator)]
+    pub estimator: Option<EstimatorChoice>,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
     #[command(flatten)]
     pub common: CommonArgs,
+    #[command(flatten)]
+    pub sampling: SamplingArgs,
     /// Output file, .exr or .png; may be given more than once. Default: SCENE.exr and
     /// SCENE.png in the current folder.
     #[arg(short, long, value_name = "FILE")]
@@ -117,6 +130,21 @@ pub(super) struct RenderArgs {
 pub(super) struct VerifyArgs {
     #[command(flatten)]
     pub common: CommonArgs,
+    #[command(flatten)]
+    pub sampling: SamplingArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CostArgs {
+    #[command(flatten)]
+    pub common: CommonArgs,
+    /// Time for all measurements, such as 60s or 5m; at least 5s. More time means narrower
+    /// intervals and more predictions that are put to the test.
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_budget)]
+    pub budget: Plan,
+    /// Folder for cost.csv, cost.html, cost.svg and cost.png; default: the current one.
+    #[arg(short, long, value_name = "FOLDER", default_value = ".", hide_default_value = true)]
+    pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -224,6 +252,10 @@ fn parse_target(text: &str) -> Result<f64, String> {
                 .to_owned())
         }
     }
+}
+
+fn parse_budget(text: &str) -> Result<Plan, String> {
+    Plan::new(parse_time(text)?).map_err(|allowed| format!("expected {allowed}"))
 }
 
 fn parse_exposure(text: &str) -> Result<f64, String> {

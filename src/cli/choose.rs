@@ -39,6 +39,14 @@ impl Chosen {
         }
     }
 
+    /// What traces here.
+    pub fn describe(&self, scene: &Scene) -> Result<Description, TraceError> {
+        match self.adapter() {
+            Some(adapter) => Ok(adapter),
+            None => Ok(self.tracer(scene)?.describe()),
+        }
+    }
+
     /// What it is, if it is a device beside the twin.
     pub fn adapter(&self) -> Option<Description> {
         match self {

@@ -3,20 +3,23 @@
 
 mod args;
 mod choose;
+mod cost;
+mod cost_table;
 mod devices;
 mod diff;
 mod environment;
 mod interrupt;
 mod memory;
 mod output;
+mod phases;
 mod pilot;
 mod progress;
 mod render;
 mod setup;
 mod streams;
-mod units;
 mod verify;
 
+use crate::units;
 use args::{Cli, Command};
 use clap::Parser;
 use std::io::IsTerminal;
@@ -56,6 +59,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Verify(args) => verify::run(args),
         Command::Diff(args) => diff::run(args),
+        Command::Cost(args) => cost::run(args),
         Command::Devices => devices::run(),
     });
     match ended {

@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
-    let scene = setup::load(&args.common)?;
+    let scene = setup::load(&args.common, &args.sampling)?;
     let plan = plan(args, &scene);
     let outputs = Outputs::new(args)?;
     if let Some(log) = args.log.as_ref().filter(|log| outputs.contains(log)) {
@@ -49,7 +49,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
 /// many as fit or as it takes.
 fn plan(args: &RenderArgs, scene: &Scene) -> Plan {
     let limited = args.time.is_some() || args.target_error.is_some();
-    let spp = match args.common.spp {
+    let spp = match args.sampling.spp {
         None if limited => MAX_SPP,
         _ => scene.settings().spp(),
     };
@@ -112,7 +112,7 @@ fn trace(args: &RenderArgs, mut scene: Scene, mut plan: Plan) -> Result<Finished
     if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
         reporter.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
     }
-    if common.estimator == Some(EstimatorChoice::Auto) {
+    if args.sampling.estimator == Some(EstimatorChoice::Auto) {
         let started = Instant::now();
         scene = pilot::choose_estimator(scene, &chosen, interrupt, &reporter)?;
         plan.time = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));

@@ -1,19 +1,19 @@
 //! From the scene file and the command line to the scene that is rendered.
 
-use super::args::{CommonArgs, EstimatorChoice};
+use super::args::{CommonArgs, EstimatorChoice, SamplingArgs};
 use super::{Refusal, in_colour, refuse};
 use crate::bound;
 use crate::scene::{self, Scene};
 
 /// Loads the scene and applies what the command line says otherwise; where it leaves the
 /// choice of an estimator to a pilot, the scene's stays for now.
-pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
+pub(super) fn load(args: &CommonArgs, sampling: &SamplingArgs) -> Result<Scene, Refusal> {
     let mut scene = scene::load(&args.scene).map_err(|error| Refusal(error.render(in_colour())))?;
     if let Some(size) = args.size {
         scene = scene.with_size(size);
     }
     let mut settings = scene.settings();
-    if let Some(spp) = args.spp {
+    if let Some(spp) = sampling.spp {
         settings = settings.with_spp(spp)?;
     }
     if let Some(bounces) = args.bounces {
@@ -23,11 +23,11 @@ pub(super) fn load(args: &CommonArgs) -> Result<Scene, Refusal> {
         };
     }
     settings = settings.with_seed(args.seed.unwrap_or(settings.seed()));
-    if let Some(EstimatorChoice::Named(estimator)) = args.estimator {
+    if let Some(EstimatorChoice::Named(estimator)) = sampling.estimator {
         settings = settings.with_estimator(estimator);
     }
     let scene = scene.with_settings(settings);
-    if args.estimator != Some(EstimatorChoice::Auto) {
+    if sampling.estimator != Some(EstimatorChoice::Auto) {
         bound::check(&scene)?;
     }
     Ok(scene)

@@ -16,10 +16,10 @@ use std::sync::atomic::AtomicBool;
 
 pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     let common = &args.common;
-    if common.estimator == Some(EstimatorChoice::Auto) {
+    if args.sampling.estimator == Some(EstimatorChoice::Auto) {
         return refuse("verify checks one estimator; --estimator auto is for render");
     }
-    let scene = setup::load(common)?;
+    let scene = setup::load(common, &args.sampling)?;
     let spp = scene.settings().spp();
     if spp < 2 {
         return refuse("verify needs at least 2 samples per pixel");

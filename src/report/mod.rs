@@ -2,6 +2,7 @@
 //! not at all, and a log of the error.
 
 mod atomic;
+pub mod cost;
 mod difference;
 mod exr;
 mod exr_read;

@@ -3,6 +3,7 @@
 mod arguments;
 mod auto;
 mod candor;
+mod cost;
 mod devices;
 mod diff;
 mod films;

@@ -6,7 +6,7 @@ use std::thread::sleep;
 use std::time::Duration;
 
 /// Sends a signal, with the `kill` that every shell has built in.
-fn signal(running: &Running, name: &str) {
+pub fn signal(running: &Running, name: &str) {
     let kill = format!("kill -{name} {}", running.id());
     assert!(Command::new("sh").args(["-c", &kill]).status().expect("sh runs").success(), "{kill}");
 }

@@ -1,0 +1,96 @@
+//! `candor cost`: what accuracy costs in time on this device.
+
+use super::args::{CostArgs, DeviceChoice, SamplingArgs};
+use super::choose::Chosen;
+use super::phases::Phases;
+use super::{
+    DONE, INTERRUPTED, Refusal, choose, cost_table, interrupt, memory, refuse, setup, streams,
+    units,
+};
+use crate::cost::{CostError, Study, Tracers, Watch, bytes_per_pixel, study};
+use crate::cpu::CpuTracer;
+use crate::report::cost::{CostReport, check_folder};
+use crate::scene::Scene;
+use crate::tracer::{Description, TraceError, Tracer};
+use serde::Serialize;
+use std::path::PathBuf;
+
+pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
+    let common = &args.common;
+    let scene = setup::load(common, &SamplingArgs::default())?;
+    if !scene.has_lights() {
+        return refuse("the scene has no lights: it is black everywhere, at no cost");
+    }
+    check_folder(&args.output)?;
+    let needed = u64::from(scene.size().pixels()) * bytes_per_pixel();
+    memory::check(scene.size(), needed)?;
+    let chosen = choose::choose(&common.device, common.threads)?;
+    let mut phases = Phases::new(common.quiet);
+    if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
+        phases.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
+    }
+    let description = chosen.describe(&scene)?;
+    phases.announce(&args.budget, &description.device);
+    phases.message(&format!("needs up to {} of memory", units::bytes(needed)));
+    let measured = measure(args, &scene, &chosen, &mut phases);
+    phases.finish();
+    let measured = match measured {
+        Err(CostError::Interrupted) => return Ok(INTERRUPTED),
+        measured => measured?,
+    };
+    interrupt::writing_begins();
+    let name = common.scene.file_name().unwrap_or_default().to_string_lossy();
+    let report = CostReport { scene: &name, tracer: &description, study: &measured };
+    let mut files = report.write(&args.output)?;
+    for file in &mut files {
+        // In the current folder, files are called by their bare names.
+        if let Ok(bare) = file.strip_prefix(".") {
+            *file = bare.to_owned();
+        }
+    }
+    let results = if common.json { json(&report, &files) } else { text(&report, &files) };
+    streams::results(&results)?;
+    Ok(if measured.interrupted { INTERRUPTED } else { DONE })
+}
+
+fn measure(
+    args: &CostArgs,
+    scene: &Scene,
+    chosen: &Chosen,
+    phases: &mut Phases,
+) -> Result<Study, CostError> {
+    let interrupt = interrupt::watch()
+        .map_err(|error| TraceError::Device(format!("cannot listen for Ctrl-C: {error}")))?;
+    let device = |scene: &Scene| chosen.tracer(scene);
+    let twin = |scene: &Scene| -> Result<Box<dyn Tracer>, TraceError> {
+        Ok(Box::new(CpuTracer::new(scene, args.common.threads)?))
+    };
+    let tracers = Tracers {
+        device: &device,
+        twin: if chosen.adapter().is_some() { Some(&twin) } else { None },
+    };
+    let mut observe = |progress| phases.observe(progress);
+    study(scene, tracers, &args.budget, &mut Watch { interrupt, observe: &mut observe })
+}
+
+/// The `--json` object.
+#[derive(Serialize)]
+struct Json<'a> {
+    device: &'a str,
+    driver: &'a str,
+    #[serde(flatten)]
+    study: &'a Study,
+    outputs: &'a [PathBuf],
+}
+
+fn json(report: &CostReport, outputs: &[PathBuf]) -> String {
+    let Description { device, driver, .. } = report.tracer;
+    serde_json::to_string(&Json { device, driver, study: report.study, outputs })
+        .expect("plain values serialize")
+}
+
+fn text(report: &CostReport, files: &[PathBuf]) -> String {
+    let written = files.iter().map(|file| format!("wrote {}", file.display()));
+    let tables = cost_table::tables(report);
+    written.chain([String::new(), tables]).collect::<Vec<_>>().join("\n")
+}

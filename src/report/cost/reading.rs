@@ -1,0 +1,232 @@
+//! A study in sentences: the questions that it is made for, and its answers.
+
+use crate::cost::{
+    CONFIDENCE, EXPECTED, EstimatorCost, MATTERS, RATIO_MATTERS, Study, WARNING_CONFIDENCE,
+};
+use crate::units::{rounded_percent, short_time, significant};
+
+/// A question and what a study says about it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answer {
+    /// The question.
+    pub question: &'static str,
+    /// The answer, in sentences.
+    pub text: String,
+    /// Whether something is wrong.
+    pub warning: bool,
+}
+
+/// A bias below this share of the smallest target is too small to matter.
+const NEGLIGIBLE: f64 = 0.1;
+
+pub(super) fn answers(study: &Study) -> Vec<Answer> {
+    let mut answers = vec![which_estimator(study)];
+    answers.extend(study.cheapest().map(next_digit));
+    answers.extend(error_bars(study));
+    answers.extend(predictions(study));
+    answers.extend(bounce_limit(study));
+    answers.push(trust(study));
+    answers
+}
+
+fn calm(question: &'static str, text: String) -> Answer {
+    Answer { question, text, warning: false }
+}
+
+fn which_estimator(study: &Study) -> Answer {
+    let question = "Which estimator?";
+    let Some(best) = study.cheapest() else {
+        let text = "Unproven: too few samples met light to know any estimator's error. Give more \
+                    --budget, or a smaller --size.";
+        return Answer { question, text: text.to_owned(), warning: true };
+    };
+    let mut others: Vec<&EstimatorCost> =
+        study.estimators.iter().filter(|cost| cost.estimator != best.estimator).collect();
+    others.sort_by(|a, b| {
+        let key = |cost: &EstimatorCost| cost.price().unwrap_or(f64::INFINITY);
+        key(a).total_cmp(&key(b))
+    });
+    let others = others.iter().map(|cost| {
+        let name = cost.estimator.name();
+        match (cost.price(), cost.beside_cheapest) {
+            (None, _) => format!("{name} is unproven"),
+            (Some(_), Some(ratio)) if ratio.low > 1.0 => {
+                format!("{name} takes {} times as long", significant(ratio.value, 2))
+            }
+            _ => format!("{name} may be as good"),
+        }
+    });
+    let others = others.collect::<Vec<_>>().join(", ");
+    let name = best.estimator.name();
+    calm(question, format!("{name}. For the same error {others}."))
+}
+
+fn next_digit(best: &EstimatorCost) -> Answer {
+    let times: Vec<String> = best
+        .predictions
+        .iter()
+        .map(|p| format!("{} in {}", rounded_percent(p.target, 1), short_time(p.seconds.value)))
+        .collect();
+    calm(
+        "What does the next digit cost?",
+        format!(
+            "A tenth of the error takes a hundred times the time. With {}: {}.",
+            best.estimator.name(),
+            times.join(", ")
+        ),
+    )
+}
+
+/// Whether the error falls as it must, and is as large as stated.
+fn error_bars(study: &Study) -> Option<Answer> {
+    let question = "Are the stated errors true?";
+    let checked: Vec<&EstimatorCost> =
+        study.estimators.iter().filter(|cost| cost.agreement.is_some()).collect();
+    let mut faults = Vec::new();
+    for cost in &checked {
+        let name = cost.estimator.name();
+        if let Some(slope) = cost.slope.filter(|slope| slope.suspect) {
+            faults.push(format!(
+                "with {name} the slope of error against samples is {:.3}, not {EXPECTED}",
+                slope.slope.value
+            ));
+        }
+        if let Some(agreement) = cost.agreement.filter(|agreement| agreement.suspect) {
+            faults.push(format!(
+                "with {name} realised errors are {:.2} of the stated ones",
+                agreement.ratio.value
+            ));
+        }
+    }
+    if !faults.is_empty() {
+        let text = format!(
+            "No: {}. Samples depend on each other, or have no finite variance; predicted times \
+             are not to be trusted.",
+            faults.join("; ")
+        );
+        return Some(Answer { question, text, warning: true });
+    }
+    let ratios = checked.iter().filter_map(|cost| Some(cost.agreement?.ratio.value));
+    let (low, high) =
+        ratios.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), r| (low.min(r), high.max(r)));
+    (!checked.is_empty()).then(|| {
+        let text = format!(
+            "Yes: differences between halves of each picture are {low:.2} to {high:.2} of what the \
+             error says, and no slope is off {EXPECTED} by more than {MATTERS} for sure."
+        );
+        calm(question, text)
+    })
+}
+
+fn predictions(study: &Study) -> Option<Answer> {
+    let ratios: Vec<f64> = study
+        .estimators
+        .iter()
+        .flat_map(|cost| &cost.predictions)
+        .filter_map(|p| Some(p.measured? / p.seconds.value))
+        .collect();
+    if ratios.is_empty() {
+        return None;
+    }
+    let smallest = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = ratios.iter().copied().fold(0.0, f64::max);
+    let count = ratios.len();
+    let tested = if count == 1 { "1 was".to_owned() } else { format!("{count} were") };
+    Some(calm(
+        "Do the predictions hold?",
+        format!(
+            "{tested} put to the test with other random numbers; measured times were {smallest:.2} \
+             to {largest:.2} of the predicted ones."
+        ),
+    ))
+}
+
+fn bounce_limit(study: &Study) -> Option<Answer> {
+    let own = study.ladder.iter().find(|rung| rung.bounces == study.bounces)?;
+    let deepest = study.ladder.last()?;
+    let question = "What does the bounce limit cost?";
+    let Some(missing) = &own.missing else {
+        return (own == deepest && own.seconds_to_one_percent.is_some()).then(|| {
+            calm(question, format!("{} bounces are the most that were measured.", own.bounces))
+        });
+    };
+    let slower = deepest.seconds_per_sample.value / own.seconds_per_sample.value;
+    Some(calm(
+        question,
+        format!(
+            "{} bounces miss {:.2} ± {:.2} % of the light that {} bounces find, and no number of \
+             samples brings it back; {} bounces take {} times as long for a sample. What lies \
+             beyond {} is not in these numbers.",
+            own.bounces,
+            100.0 * missing.value,
+            50.0 * (missing.high - missing.low),
+            deepest.bounces,
+            deepest.bounces,
+            significant(slower, 2),
+            deepest.bounces,
+        ),
+    ))
+}
+
+fn trust(study: &Study) -> Answer {
+    let question = "Can f32 be trusted?";
+    let Some(twin) = &study.twin else {
+        let reason = study.left_out.iter().find(|left_out| left_out.what.contains("f64"));
+        let reason = reason.map_or("interrupted before", |left_out| left_out.why.as_str());
+        return calm(question, format!("Not measured: {reason}."));
+    };
+    let bias = twin.largest_bias();
+    let target = crate::cost::TARGETS.into_iter().fold(f64::INFINITY, f64::min);
+    let verdict = if bias <= NEGLIGIBLE * target {
+        format!("Yes, to {} and beyond:", rounded_percent(target, 1))
+    } else {
+        format!("Only down to errors of about {}:", rounded_percent(bias / NEGLIGIBLE, 1))
+    };
+    calm(
+        question,
+        format!(
+            "{verdict} on the same {} samples per pixel the image mean differs from the f64 one by \
+             less than {} of it in each channel. The f64 answer takes {} times as long. (`candor \
+             verify` tests more.)",
+            twin.samples,
+            tiny(bias),
+            significant(twin.slowdown.value, 2),
+        ),
+    )
+}
+
+/// A share that may be far below a per cent.
+fn tiny(share: f64) -> String {
+    if share < 1e-6 { format!("{share:.0e}") } else { rounded_percent(share, 2) }
+}
+
+/// What the numbers mean, for those who want to know.
+pub(super) fn notes() -> [String; 5] {
+    [
+        format!(
+            "Intervals are two-sided at {} and cover this run's noise alone: rounds take turns, \
+             so that drift of the machine hits all estimators alike and their ratios are known \
+             better than each alone; another machine, or this one on a busy day, has other times.",
+            rounded_percent(CONFIDENCE, 2)
+        ),
+        "The error is the relative RMS error: the root of the pixels' mean squared standard \
+         error, over the picture's mean luminance. The variance is its square at one sample per \
+         pixel; efficiency is 1/(variance × seconds per sample)."
+            .to_owned(),
+        "Points are realised errors, not stated ones: a picture is off by about half the \
+         difference between two pictures of half its samples. No two points of a line share \
+         samples. Lines are predicted from the variance."
+            .to_owned(),
+        format!(
+            "A warning comes where a slope is not {EXPECTED} or realised errors are not the stated \
+             ones at a confidence of {}, and off by more than {MATTERS} or {}, which would change \
+             predicted times by about a tenth.",
+            rounded_percent(WARNING_CONFIDENCE, 3),
+            rounded_percent(RATIO_MATTERS, 1),
+        ),
+        "Measured times end when a run's own stated error is at the target; the compilation of the \
+         kernel is not in them. Unproven pixels have met no light yet: what they hide is in no \
+         error."
+            .to_owned(),
+    ]
+}
