@@ -1,31 +1,44 @@
 // One path that counts light only where it hits it by itself, as in the source.
 
-fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
-    load_shapes();
-    var ray = camera_ray(pixel, unit_floats(random_bits(key, 0u)));
-    var throughput = vec3<f32>(1.0);
-    var leaving = NO_SPHERE;
-    for (var bounce = 0u; bounce <= BOUNCES; bounce++) {
-        let hit = nearest(ray, leaving);
-        if hit.sphere >= UNFINISHED {
-            return Sample(vec3<f32>(0.0), hit.sphere == NO_SPHERE);
-        }
-        let color = scene.spheres[hit.sphere].color;
-        if scene.spheres[hit.sphere].kind == KIND_EMITTER {
-            return Sample(throughput * color, true);
-        }
-        if bounce == BOUNCES {
-            return Sample(vec3<f32>(0.0), true);
-        }
-        let point = surface_point(ray, hit);
-        let u = unit_floats(random_bits(key, bounce + 1u));
-        let scattering = scatter(hit.sphere, point.normal, ray.direction, u);
-        if scattering.weight == 0.0 {
-            return Sample(vec3<f32>(0.0), true);
-        }
-        throughput *= scattering.weight * color;
-        ray = Ray(point.position, scattering.direction);
-        leaving = hit.sphere;
+struct Path {
+    ray: Ray,
+    throughput: vec3<f32>,
+    // The sphere that the ray starts on.
+    leaving: u32,
+    radiance: vec3<f32>,
+    // Whether the path came to an end of its own.
+    finished: bool,
+}
+
+fn start(ray: Ray) -> Path {
+    return Path(ray, vec3<f32>(1.0), NO_SPHERE, vec3<f32>(0.0), false);
+}
+
+// Follows one segment and scatters at its end; whether the path goes on.
+fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
+    let ray = (*path).ray;
+    let hit = nearest(ray, (*path).leaving);
+    (*path).finished = hit.sphere != UNFINISHED;
+    if hit.sphere >= UNFINISHED {
+        return false;
     }
-    return Sample(vec3<f32>(0.0), false);
+    let color = scene.spheres[hit.sphere].color;
+    if scene.spheres[hit.sphere].kind == KIND_EMITTER {
+        (*path).radiance = (*path).throughput * color;
+        return false;
+    }
+    if bounce == BOUNCES {
+        return false;
+    }
+    let point = surface_point(ray, hit);
+    let u = unit_floats(random_bits(key, bounce + 1u));
+    let scattering = scatter(hit.sphere, point.normal, ray.direction, u);
+    if scattering.weight == 0.0 {
+        return false;
+    }
+    (*path).finished = false;
+    (*path).throughput *= scattering.weight * color;
+    (*path).ray = Ray(point.position, scattering.direction);
+    (*path).leaving = hit.sphere;
+    return true;
 }

@@ -33,39 +33,55 @@ fn connect(point: SurfacePoint, sphere: u32, incoming: vec3<f32>, u: vec2<f32>,
     return select(share, 0.0, blocked || !samples_light_at(sphere)) * scene.spheres[pick.light].color;
 }
 
-fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {
-    load_shapes();
-    var ray = camera_ray(pixel, unit_floats(random_bits(key, 0u)));
-    var radiance = vec3<f32>(0.0);
-    var throughput = vec3<f32>(1.0);
-    var leaving = NO_SPHERE;
-    var departure = Departure(SurfacePoint(ray.origin, ray.direction), 0.0, true);
-    for (var bounce = 0u; bounce <= BOUNCES; bounce++) {
-        let hit = nearest(ray, leaving);
-        if hit.sphere >= UNFINISHED {
-            return Sample(radiance, hit.sphere == NO_SPHERE && !unfinished);
-        }
-        let color = scene.spheres[hit.sphere].color;
-        if scene.spheres[hit.sphere].kind == KIND_EMITTER {
-            let share = share_of_hit(hit.sphere, departure);
-            return Sample(radiance + throughput * share * color, !unfinished);
-        }
-        if bounce == BOUNCES {
-            return Sample(radiance, !unfinished);
-        }
-        let point = surface_point(ray, hit);
-        let bits = random_bits(key, bounce + 1u);
-        let light_u = vec2<f32>(unit_float(bits.z), unit_float(bits.w));
-        throughput *= color;
-        radiance += throughput * connect(point, hit.sphere, ray.direction, light_u, key, bounce);
-        let scattering = scatter(hit.sphere, point.normal, ray.direction, unit_floats(bits));
-        departure = Departure(point, scattering.density, !samples_light_at(hit.sphere));
-        if scattering.weight == 0.0 || is_done(departure, bounce + 1u) {
-            return Sample(radiance, !unfinished);
-        }
-        throughput *= scattering.weight;
-        ray = Ray(point.position, scattering.direction);
-        leaving = hit.sphere;
+struct Path {
+    ray: Ray,
+    throughput: vec3<f32>,
+    // The sphere that the ray starts on.
+    leaving: u32,
+    departure: Departure,
+    radiance: vec3<f32>,
+    // Whether the path came to an end of its own.
+    finished: bool,
+}
+
+fn start(ray: Ray) -> Path {
+    let eye = Departure(SurfacePoint(ray.origin, ray.direction), 0.0, true);
+    return Path(ray, vec3<f32>(1.0), NO_SPHERE, eye, vec3<f32>(0.0), false);
+}
+
+// Follows one segment, connects and scatters at its end; whether the path goes on.
+fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
+    let ray = (*path).ray;
+    let hit = nearest(ray, (*path).leaving);
+    (*path).finished = hit.sphere != UNFINISHED && !unfinished;
+    if hit.sphere >= UNFINISHED {
+        return false;
     }
-    return Sample(radiance, false);
+    let color = scene.spheres[hit.sphere].color;
+    if scene.spheres[hit.sphere].kind == KIND_EMITTER {
+        let share = share_of_hit(hit.sphere, (*path).departure);
+        (*path).radiance += (*path).throughput * share * color;
+        (*path).finished = !unfinished;
+        return false;
+    }
+    if bounce == BOUNCES {
+        return false;
+    }
+    let point = surface_point(ray, hit);
+    let bits = random_bits(key, bounce + 1u);
+    let light_u = vec2<f32>(unit_float(bits.z), unit_float(bits.w));
+    let throughput = (*path).throughput * color;
+    (*path).radiance += throughput * connect(point, hit.sphere, ray.direction, light_u, key, bounce);
+    let scattering = scatter(hit.sphere, point.normal, ray.direction, unit_floats(bits));
+    let departure = Departure(point, scattering.density, !samples_light_at(hit.sphere));
+    (*path).finished = !unfinished;
+    if scattering.weight == 0.0 || is_done(departure, bounce + 1u) {
+        return false;
+    }
+    (*path).finished = false;
+    (*path).departure = departure;
+    (*path).throughput = throughput * scattering.weight;
+    (*path).ray = Ray(point.position, scattering.direction);
+    (*path).leaving = hit.sphere;
+    return true;
 }

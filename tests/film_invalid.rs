@@ -102,27 +102,30 @@ fn an_unchecked_kernel_is_rejected() {
     assert!(ledger.count != addresses(12).len() as u64 && film != without);
 }
 
-/// A loop over bounces that is left early: exactly the paths that were still under way
-/// are unfinished.
+/// A loop over bounces that is left early, or a segment that is missing where they are written
+/// out: exactly the paths that were still under way are unfinished.
 #[test]
 fn a_path_cut_short_is_unfinished() {
-    let scene = scene();
-    let whole = "bounce <= BOUNCES; bounce++";
-    let (cut, ledger) = trace(&mut mutant(&scene, whole, "bounce < BOUNCES; bounce++"), &[0..64]);
-    assert!(ledger.count > 0 && ledger.records.len() == 16);
-    assert!(ledger.records.iter().all(|r| r.reason == InvalidReason::Unfinished));
-    // One bounce less, properly ended, leaves the same light.
-    let settings = scene.settings().with_bounces(1).expect("a bounce");
-    let shorter = scene.clone().with_settings(settings);
-    let packed = support::scenes::packed(&scene).scene;
-    let mut tracer = candor::gpu::GpuTracer::with_kernel(
-        &scene,
-        support::gpu::open(),
-        &packed,
-        &kernel(&shorter),
-    )
-    .expect("the device takes the kernel");
-    assert!(film(&mut tracer, &[0..64]) == cut);
+    let last = "    if goes_on {\n        goes_on = advance(&path, key, 2u);\n    }\n";
+    let cuts = [(2, last, ""), (6, "bounce <= BOUNCES && goes_on", "bounce < BOUNCES && goes_on")];
+    for (bounces, whole, cut) in cuts {
+        let under = |bounces| {
+            let scene = scene();
+            let settings = scene.settings().with_bounces(bounces).expect("a few bounces");
+            scene.with_settings(settings)
+        };
+        let scene = under(bounces);
+        let (cut, ledger) = trace(&mut mutant(&scene, whole, cut), &[0..256]);
+        assert!(ledger.count > 0 && ledger.records.len() == 16, "{bounces}: {ledger:?}");
+        assert!(ledger.records.iter().all(|r| r.reason == InvalidReason::Unfinished));
+        // One bounce less, properly ended, leaves the same light.
+        let packed = support::scenes::packed(&scene).scene;
+        let shorter = kernel(&under(bounces - 1));
+        let mut tracer =
+            candor::gpu::GpuTracer::with_kernel(&scene, support::gpu::open(), &packed, &shorter)
+                .expect("the device takes the kernel");
+        assert!(film(&mut tracer, &[0..256]) == cut, "{bounces}");
+    }
 }
 
 /// A loop over spheres that is left early: every sample is unfinished.

@@ -27,8 +27,8 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
     ),
     (
         "a light returns 1",
-        "Sample(throughput * color, true)",
-        "Sample(throughput, true)",
+        "(*path).radiance = (*path).throughput * color;",
+        "(*path).radiance = (*path).throughput;",
         Judge::Classic,
     ),
     ("a bounce too few", "if bounce == BOUNCES {", "if bounce + 1u >= BOUNCES {", Judge::Classic),

@@ -64,6 +64,35 @@ impl Nearest {
     }
 }
 
+/// Paths of up to this many bounces are written out, one statement a segment: a driver's
+/// compiler does so by itself for short loops, but not for the longer body of `mis`
+/// (BENCHMARKS.md, "Speed of the classic scene").
+const UNROLLED_BOUNCES: u32 = 4;
+
+/// The function that follows a path from segment to segment.
+fn follow(bounces: u32) -> String {
+    let segments: String = if bounces > UNROLLED_BOUNCES {
+        let step = "        goes_on = advance(&path, key, bounce);\n";
+        format!(
+            "    for (var bounce = 0u; bounce <= BOUNCES && goes_on; bounce++) {{\n{step}    }}\n"
+        )
+    } else {
+        let step = |bounce| {
+            format!(
+                "    if goes_on {{\n        goes_on = advance(&path, key, {bounce}u);\n    }}\n"
+            )
+        };
+        (0..=bounces).map(step).collect()
+    };
+    format!(
+        "// One path: from the camera to a light, to nowhere, or to its last bounce.\n\
+         fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {{\n    load_shapes();\n    \
+         var path = start(camera_ray(pixel, unit_floats(random_bits(key, 0u))));\n    \
+         var goes_on = true;\n{segments}    \
+         return Sample(path.radiance, path.finished);\n}}\n"
+    )
+}
+
 /// The lights of a scene, for the estimators that sample them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
@@ -159,6 +188,7 @@ impl Kernel {
         } else {
             parts.push(fragment!("path_blind").to_owned());
         }
+        parts.push(follow(self.bounces));
         let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
         parts.extend(last.map(str::to_owned));
         parts.join("\n")
