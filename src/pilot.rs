@@ -20,8 +20,9 @@ const FEWEST: u64 = 8;
 /// Most samples per pixel of a trial; a picture of a few pixels has enough then.
 const MOST: u64 = 1 << 20;
 
-/// A variance is judged by what it may be at most with this probability of being more.
-const DOUBT: f64 = 1e-3;
+/// A trial whose mean is below the others' by more than so many standard errors of both has
+/// not found their light.
+const APART: f64 = 3.0;
 
 /// What a trial of one estimator found.
 #[derive(Debug, Clone, Copy)]
@@ -30,32 +31,49 @@ pub struct Trial {
     pub estimator: Estimator,
     /// Seconds per sample.
     pub seconds_per_sample: f64,
-    /// Variance of one sample over the squared mean luminance, averaged over pixels; `None` if
-    /// no sample has found light.
+    /// Variance of one sample's luminance, averaged over pixels; `None` if no sample has found
+    /// light.
     pub variance: Option<f64>,
-    /// What that variance may be at most, light that was not found yet included.
-    pub variance_bound: Option<f64>,
+    /// Mean luminance of the picture.
+    pub luminance: f64,
+    /// Its standard error; 0 where it is not known.
+    pub luminance_error: f64,
 }
 
 impl Trial {
     /// Seconds until a picture of `pixels` pixels has the relative RMS error `error`.
     #[must_use]
     pub fn seconds_to(&self, error: f64, pixels: u32) -> Option<f64> {
-        let samples = self.variance? / (error * error) * f64::from(pixels);
-        Some(samples * self.seconds_per_sample)
+        let relative = self.variance? / (self.luminance * self.luminance);
+        Some(relative / (error * error) * f64::from(pixels) * self.seconds_per_sample)
     }
 
-    /// Variance × time, by which trials are ranked: the variance at its bound, so that an
-    /// estimator that has hardly found the light does not look as if it had no noise.
+    /// Variance × time: what a given error costs.
     fn price(&self) -> Option<f64> {
-        Some(self.variance_bound? * self.seconds_per_sample)
+        Some(self.variance? * self.seconds_per_sample)
+    }
+
+    /// Whether this trial's picture is darker than another's beyond both errors: it looks
+    /// quiet because it has not found the light.
+    fn misses_light_of(&self, other: &Self) -> bool {
+        let error = self.luminance_error.hypot(other.luminance_error);
+        self.luminance + APART * error < other.luminance
     }
 }
 
-/// The cheapest estimator; `None` if no trial has found light.
+/// The estimators that have not found light that another has: all have the same mean.
+#[must_use]
+pub fn darker(trials: &[Trial]) -> Vec<Estimator> {
+    let misses = |trial: &&Trial| trials.iter().any(|other| trial.misses_light_of(other));
+    trials.iter().filter(misses).map(|trial| trial.estimator).collect()
+}
+
+/// The cheapest estimator of those that have found the light; `None` if none has.
 #[must_use]
 pub fn cheapest(trials: &[Trial]) -> Option<Estimator> {
-    let priced = trials.iter().filter_map(|trial| Some((trial.price()?, trial.estimator)));
+    let darker = darker(trials);
+    let seeing = trials.iter().filter(|trial| !darker.contains(&trial.estimator));
+    let priced = seeing.filter_map(|trial| Some((trial.price()?, trial.estimator)));
     priced.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, estimator)| estimator)
 }
 
@@ -113,16 +131,17 @@ pub fn try_out(
             Ok(Trial {
                 estimator: *estimator,
                 seconds_per_sample,
-                variance: relative_variance(&summary),
-                variance_bound: summary.spread.relative_variance_bound(done, DOUBT),
+                variance: variance(&summary, film.size().pixels()),
+                luminance: summary.luminance,
+                luminance_error: summary.luminance_error.unwrap_or(0.0),
             })
         })
         .collect()
 }
 
-/// Variance per sample over the squared mean luminance.
+/// Mean variance of a sample, from the standard error of the image mean.
 #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
-fn relative_variance(summary: &Summary) -> Option<f64> {
-    let error = summary.relative_error?;
-    Some(error * error * summary.samples as f64)
+fn variance(summary: &Summary, pixels: u32) -> Option<f64> {
+    let error = summary.luminance_error?;
+    Some(error * error * summary.samples as f64 * f64::from(pixels))
 }

@@ -8,7 +8,7 @@ use super::{
     units,
 };
 use crate::bound::sample_scale;
-use crate::estimate::{FIRST_LOOK, Summary, summarize};
+use crate::estimate::{FIRST_LOOK, Summary, is_look, summarize};
 use crate::film::{Film, SampleRanges};
 use crate::render::{Audience, Outcome, Plan, Progress, Stop, render};
 use crate::report::{ErrorLog, FileError, Picture, Provenance};
@@ -136,7 +136,13 @@ fn trace(args: &RenderArgs, mut scene: Scene, mut plan: Plan) -> Result<Finished
     let outcome = outcome?;
     let film = tracer.film()?;
     let ledger = tracer.ledger()?;
-    let summary = summarize(&film);
+    let mut summary = summarize(&film);
+    // Invalid samples add 0 where they should not, and an interruption is no look that the
+    // confidence is spread over: in neither case does the bound hold.
+    let planned = outcome.stop != Stop::Interrupted || is_look(summary.samples);
+    if ledger.count > 0 || !planned {
+        summary.error_bound = None;
+    }
     log.add(&summary, outcome.elapsed);
     let log_error = log.error;
     Ok(Finished { scene, summary, film, ledger, outcome, tracer: description, log_error })
@@ -281,9 +287,24 @@ impl Finished {
     /// The error, and with a target also what it is at most.
     fn error(&self, target: Option<f64>) -> String {
         let Some(error) = self.summary.relative_error else { return "error unknown".to_owned() };
-        let bound = self.summary.error_bound.filter(|_| target.is_some());
-        let bound = bound.map(|b| format!(", at most {:.3} % with 99 % confidence", 100.0 * b));
-        format!("error {:.3} %{}", 100.0 * error, bound.unwrap_or_default())
+        let bound = match (target, self.summary.error_bound) {
+            (None, _) => String::new(),
+            (_, Some(b)) => format!(", at most {:.3} % with 99 % confidence", 100.0 * b),
+            (_, None) => format!(", without a bound ({})", self.why_unbounded()),
+        };
+        format!("error {:.3} %{bound}", 100.0 * error)
+    }
+
+    /// Why nothing can be said of how large the error is at most.
+    fn why_unbounded(&self) -> String {
+        if self.ledger.count > 0 {
+            return "samples were invalid".to_owned();
+        }
+        if self.outcome.stop == Stop::Interrupted {
+            return "the render was interrupted".to_owned();
+        }
+        let largest = f64::from(self.film.scale().bound()) / self.summary.luminance;
+        format!("one sample may be {largest:.0e} times the mean, so much may not be found yet")
     }
 
     /// What a target that was not reached would cost, where that can be told.

@@ -94,17 +94,6 @@ impl Spread {
         if mean > 0.0 { mean_square.sqrt() / mean } else { f64::INFINITY }
     }
 
-    /// Upper bound on the mean variance of one sample over the squared mean luminance, after
-    /// `samples` samples per pixel, wrong with probability `doubt`; `None` for a picture that is
-    /// black so far. Light that no sample has found yet is included (Maurer & Pontil, COLT
-    /// 2009, theorem 10, pooled over pixels).
-    #[must_use]
-    pub fn relative_variance_bound(&self, samples: u64, doubt: f64) -> Option<f64> {
-        let variance = self.variance_bound(samples, -doubt.ln());
-        let luminance = self.luminance();
-        (luminance > 0.0).then(|| variance / (luminance * luminance))
-    }
-
     /// The variance's bound, wrong with probability exp(−`l`).
     fn variance_bound(&self, samples: u64, l: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "at most 2^32 samples")]

@@ -11,8 +11,8 @@ use crate::scene::ImageSize;
 /// Tiles have this many pixels on a side, fewer at the picture's edge.
 const TILE: usize = 16;
 
-/// A z-test needs this many effective hits on one side; the other then expects as many.
-/// With 1000 the mean of Bernoulli hits has skewness 0.03, and the normal tail at five
+/// A z-test needs this many effective hits. Of two films of one estimator and as many samples
+/// one side suffices: the other then expects as many. With 1000 the mean of Bernoulli hits has skewness 0.03, and the normal tail at five
 /// standard errors is off by exp(0.03·5³/6), less than a factor of two.
 const MIN_HITS: f64 = 1000.0;
 
@@ -89,17 +89,22 @@ impl Comparison {
 pub fn compare(a: &Film, b: &Film) -> Comparison {
     assert_eq!(a.size(), b.size(), "films of one picture");
     let pixels = std::iter::zip(groups(a), groups(b)).map(|(a, b)| [a, b]);
-    over_tiles(a.size(), pixels, ROUNDING)
+    over_tiles(a.size(), pixels, ROUNDING, |sides| sides.iter().any(has_hits))
 }
 
 /// Compares two stored pictures with independent samples. Where one has no error bars,
-/// its values are taken as exact.
+/// its values are taken as exact. Each side with error bars needs its own hits: of another
+/// estimator, or of fewer samples, it may not expect as many, and then its variance is mostly
+/// too small where it is too dark.
 ///
 /// # Panics
 /// If the pictures differ in size.
 #[must_use]
 pub fn compare_pictures(a: &Measured<'_>, b: &Measured<'_>) -> Comparison {
-    over_tiles(a.size, Measured::side_by_side(a, b), rounding(a, b))
+    let exact = [a.bars.is_none(), b.bars.is_none()];
+    let enough =
+        |sides: &Sides| std::iter::zip(sides, exact).all(|(side, exact)| exact || has_hits(side));
+    over_tiles(a.size, Measured::side_by_side(a, b), rounding(a, b), enough)
 }
 
 /// The relative rounding to be granted to two stored pictures.
@@ -107,7 +112,12 @@ pub(super) fn rounding(a: &Measured<'_>, b: &Measured<'_>) -> f64 {
     ROUNDING.max(a.rounding).max(b.rounding)
 }
 
-fn over_tiles(size: ImageSize, pixels: impl Iterator<Item = Sides>, rounding: f64) -> Comparison {
+fn over_tiles(
+    size: ImageSize,
+    pixels: impl Iterator<Item = Sides>,
+    rounding: f64,
+    enough: impl Fn(&Sides) -> bool,
+) -> Comparison {
     let mut image = Sides::default();
     let mut tested = Vec::new();
     let mut pool = Sides::default();
@@ -140,8 +150,8 @@ fn over_tiles(size: ImageSize, pixels: impl Iterator<Item = Sides>, rounding: f6
     }
 }
 
-fn enough(sides: &Sides) -> bool {
-    sides.iter().any(|side| side.hits() >= MIN_HITS)
+fn has_hits(side: &Group) -> bool {
+    side.hits() >= MIN_HITS
 }
 
 fn deviation(z: f64) -> Deviation {

@@ -8,7 +8,8 @@ use crate::film::{Film, sums};
 pub struct Paired {
     /// Difference of the image means, (a - b)/b, per channel.
     pub bias: [f64; 3],
-    /// Its standard error, from the spread of the differences over pixels.
+    /// Its standard error, from the spread of the differences over pixels; infinite for
+    /// one pixel.
     pub error: [f64; 3],
 }
 
@@ -59,8 +60,9 @@ pub fn pair(a: &Film, b: &Film) -> Paired {
         bias: std::array::from_fn(|c| relative(difference[c], c)),
         error: std::array::from_fn(|c| {
             let mean = difference[c] / pixels;
-            let spread = (squares[c] / pixels - mean * mean).max(0.0);
-            relative((spread * pixels).sqrt(), c)
+            let spread = (squares[c] / pixels - mean * mean).max(0.0) * pixels / (pixels - 1.0);
+            // One pixel shows no spread: what it is off by is all that is known.
+            if pixels > 1.0 { relative((spread * pixels).sqrt(), c) } else { f64::INFINITY }
         }),
     }
 }
