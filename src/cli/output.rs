@@ -41,6 +41,14 @@ impl Outputs {
                 return refuse(format_args!("{}: named twice", path.display()));
             }
             report::check_writable(&path)?;
+            let is_foreign = format == Format::Exr && report::film_samples(&path)?.is_none();
+            if is_foreign && !args.force {
+                return refuse(format_args!(
+                    "{}: was not written by candor and stays as it is; --force replaces it, \
+                     -o names another file",
+                    path.display()
+                ));
+            }
             files.push((path, format));
         }
         Ok(Self { files, force: args.force, quiet: args.common.quiet })
@@ -97,7 +105,7 @@ impl Outputs {
             return Ok(None);
         }
         for (path, _) in self.files.iter().filter(|(_, format)| *format == Format::Exr) {
-            let there = report::film_samples(path)?;
+            let there = report::film_samples(path)?.unwrap_or(0);
             if there > samples {
                 return Ok(Some((path, there)));
             }

@@ -126,22 +126,23 @@ fn latin(text: &str) -> Text {
     Text::new_or_none(&shown).unwrap_or_else(|| Text::from("?"))
 }
 
-/// Samples per pixel of the film in `path`: 0 where there is no file, or one that
-/// candor did not write.
+/// Samples per pixel of the film in `path`; 0 where there is no file, or an empty one.
+/// `None` if candor did not write it.
 ///
 /// # Errors
 /// If the file cannot be opened, though it is there.
-pub fn film_samples(path: &Path) -> Result<u64, FileError> {
-    match std::fs::File::open(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(0),
+pub fn film_samples(path: &Path) -> Result<Option<u64>, FileError> {
+    match std::fs::File::open(path).and_then(|file| file.metadata()) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Some(0)),
         Err(error) => return Err(FileError::new(path, &error)),
+        Ok(there) if there.len() == 0 || !there.is_file() => return Ok(Some(0)),
         Ok(_) => {}
     }
-    let Ok(meta) = MetaData::read_from_file(path, false) else { return Ok(0) };
+    let Ok(meta) = MetaData::read_from_file(path, false) else { return Ok(None) };
     let wanted = Text::from(format!("{PREFIX}spp").as_str());
     let value = meta.headers.iter().find_map(|header| header.own_attributes.other.get(&wanted));
     Ok(match value {
-        Some(AttributeValue::Text(text)) => text.to_string().parse().unwrap_or(0),
-        _ => 0,
+        Some(AttributeValue::Text(text)) => text.to_string().parse().ok(),
+        _ => None,
     })
 }

@@ -3,12 +3,15 @@
 use super::{FileError, check_writable};
 use crate::estimate::Summary;
 use std::fs::File;
-use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
+use std::io::{BufRead, BufReader, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The first line, by which a log is known.
 const HEADER: &str = "samples,seconds,relative_error,error_bound,luminance,unproven_pixels";
+
+/// No log is longer than so many bytes, at a row of some 80 a second.
+const LONGEST: u64 = 1 << 28;
 
 /// A log under way. Columns: samples per pixel, seconds since the start, relative RMS error,
 /// the upper bound on it (only at the counts that its confidence is spread over), mean
@@ -71,12 +74,22 @@ fn may_replace(path: &Path) -> Result<bool, FileError> {
         Ok(there) if !there.is_file() => return Ok(true),
         Ok(_) => {}
     }
-    let mut first = Vec::new();
     let file = File::open(path).map_err(|error| failed(path, &error))?;
-    let longest = HEADER.len() as u64 + 2;
-    let line = BufReader::new(file.take(longest)).read_until(b'\n', &mut first);
-    line.map_err(|error| failed(path, &error))?;
-    Ok(first.is_empty() || first.trim_ascii_end() == HEADER.as_bytes())
+    if file.metadata().map_err(|error| failed(path, &error))?.len() > LONGEST {
+        return Ok(false);
+    }
+    for (number, line) in BufReader::new(file).split(b'\n').enumerate() {
+        let line = line.map_err(|error| failed(path, &error))?;
+        if !(if number == 0 { line.trim_ascii_end() == HEADER.as_bytes() } else { is_row(&line) }) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Whether a line holds nothing but the numbers of a row.
+fn is_row(line: &[u8]) -> bool {
+    line.iter().all(|byte| byte.is_ascii_digit() || b".,-einf\r".contains(byte))
 }
 
 fn failed(path: &Path, error: &std::io::Error) -> FileError {

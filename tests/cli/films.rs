@@ -88,13 +88,18 @@ fn a_short_render_goes_beside_a_better_film() {
     assert_eq!(folder.files(), ["a.1.exr", "a.1.png", "a.exr", "a.png"]);
 }
 
-/// What is there and is no film of candor is a file like any other.
+/// An EXR that candor did not write may be somebody's reference: it is replaced with `--force`
+/// alone. A PNG is made anew from its film.
 #[test]
-fn other_files_are_replaced() {
+fn other_programs_films_are_replaced_with_force_alone() {
     let folder = Folder::new();
-    folder.write("scene.exr", "not a picture");
+    folder.write("scene.exr", "not of candor");
     folder.write("scene.png", "not a picture");
-    folder.candor("render scene.toml --device cpu --quiet").silently_done();
+    let render = "render scene.toml --device cpu --quiet";
+    folder.candor(render).refused(&["scene.exr: was not written by candor", "--force"]);
+    assert_eq!(folder.read("scene.exr"), b"not of candor");
+    assert_eq!(folder.read("scene.png"), b"not a picture");
+    folder.candor(&format!("{render} --force")).silently_done();
     assert!(folder.read("scene.exr").starts_with(&[0x76, 0x2f, 0x31, 0x01]));
     assert!(folder.read("scene.png").starts_with(b"\x89PNG"));
 }
