@@ -68,6 +68,14 @@ impl Snapshot {
         self.average(|pixel| pixel.deviations) / (self.samples as f64 - 1.0)
     }
 
+    /// Effective number of pixels that hold the noise: (Σσ²)²/Σσ⁴, with which the squares of
+    /// normal deviations scatter; 0 where no pixel varies.
+    pub fn varying_pixels(&self) -> f64 {
+        let squares: f64 = self.pixels.iter().map(|pixel| pixel.deviations.powi(2)).sum();
+        let sum: f64 = self.pixels.iter().map(|pixel| pixel.deviations).sum();
+        if squares > 0.0 { sum * sum / squares } else { 0.0 }
+    }
+
     fn average(&self, of: impl Fn(&Pixel) -> f64) -> f64 {
         self.pixels.iter().map(of).sum::<f64>() / self.count()
     }
