@@ -194,6 +194,22 @@ mod tests {
         }
     }
 
+    /// Roots of χ² with 8 degrees of freedom, all of them uncertain by 1/√16: their mean
+    /// logarithm is off by -1/16, twice five standard errors of 2000 points.
+    #[test]
+    fn few_degrees_of_freedom_do_not_lower_the_ratio() {
+        let mut random = Uniform(4);
+        let points: Vec<Point> = (0..2000)
+            .map(|_| {
+                let squares: f64 = (0..8).map(|_| random.normal().powi(2)).sum();
+                Point { samples: 1, error: (squares / 8.0).sqrt(), uncertainty: 0.25 }
+            })
+            .collect();
+        let found = agreement(&points, 1.0).expect("points");
+        let five_errors = 5.0 * 0.25 / 2000_f64.sqrt();
+        assert!(found.ratio.value.ln().abs() < five_errors, "{found:?}");
+    }
+
     #[test]
     fn three_points_are_no_fit() {
         let points = points(&mut Uniform(3), -0.5);

@@ -350,7 +350,9 @@ mod tests {
                 Some(growth) => growth.look(&film),
             }
         }
-        let batches = growth.expect("four samples").batches(&Snapshot::of(&film));
+        let end = Snapshot::of(&film);
+        assert!((end.varying_pixels() - 1.0).abs() < 1e-12, "{}", end.varying_pixels());
+        let batches = growth.expect("four samples").batches(&end);
         let found: Vec<_> = batches.iter().map(|b| (b.samples, b.variance)).collect();
         assert_eq!(found.len(), 2);
         for ((samples, variance), expected) in found.into_iter().zip([2.0, 8.0]) {

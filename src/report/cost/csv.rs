@@ -109,6 +109,7 @@ fn estimator(rows: &mut Rows, cost: &EstimatorCost) -> Result<(), String> {
     rows.number(labels("samples_per_pixel", "1"), cost.samples as f64)?;
     rows.measured(labels("seconds_per_sample", "s"), &cost.seconds_per_sample)?;
     rows.number(labels("unproven_pixels", "1"), cost.unproven_pixels as f64)?;
+    rows.number(labels("varying_pixels", "1"), cost.varying_pixels)?;
     if let Some(noise) = &cost.noise {
         rows.measured(labels("relative_variance", "1"), &noise.variance)?;
         if let Some(efficiency) = &noise.efficiency {

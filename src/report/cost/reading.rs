@@ -57,9 +57,9 @@ fn which_estimator(study: &Study) -> Answer {
         match (cost.price(), cost.beside_cheapest) {
             (None, _) => format!("{name} is unproven"),
             (Some(_), None) if best.is_noiseless() && cost.is_noiseless() => {
-                format!("{name} has no noise either, but is slower")
+                format!("{name} has none either, but is slower")
             }
-            (Some(_), None) => format!("{name} has noise, unlike this one"),
+            (Some(_), None) => format!("{name} has some"),
             (Some(_), Some(ratio)) if ratio.low > 1.0 => {
                 format!("{name} takes {} times as long", significant(ratio.value, 2))
             }
@@ -68,7 +68,8 @@ fn which_estimator(study: &Study) -> Answer {
     });
     let others = others.collect::<Vec<_>>().join(", ");
     let name = best.estimator.name();
-    calm(question, format!("{name}. For the same error {others}."))
+    let sense = if best.is_noiseless() { "It has no noise;" } else { "For the same error" };
+    calm(question, format!("{name}. {sense} {others}."))
 }
 
 fn next_digit(best: &EstimatorCost) -> Answer {
@@ -126,7 +127,9 @@ fn error_bars(study: &Study) -> Option<Answer> {
         );
         return Some(Answer { question, text, warning: true });
     }
-    let few = checked.iter().filter(|cost| cost.varying_pixels < MIN_VARYING);
+    let noisy =
+        study.estimators.iter().filter(|cost| cost.price().is_some_and(|price| price > 0.0));
+    let few = noisy.filter(|cost| cost.varying_pixels < MIN_VARYING);
     let few: Vec<&str> = few.map(|cost| cost.estimator.name()).collect();
     if !few.is_empty() {
         let text = format!(
@@ -149,28 +152,32 @@ fn error_bars(study: &Study) -> Option<Answer> {
 }
 
 fn predictions(study: &Study) -> Option<Answer> {
-    let ratios: Vec<f64> = study
-        .estimators
-        .iter()
-        .flat_map(|cost| &cost.predictions)
-        .filter_map(|p| Some(p.measured? / p.seconds.value))
+    let predictions = study.estimators.iter().flat_map(|cost| &cost.predictions);
+    let tests: Vec<(f64, f64)> = predictions
+        .filter_map(|p| Some((p.seconds.value, p.measured? / p.seconds.value)))
         .collect();
-    if ratios.is_empty() {
-        return None;
-    }
-    let smallest = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = ratios.iter().copied().fold(0.0, f64::max);
-    let count = ratios.len();
+    let ratios = || tests.iter().map(|&(_, ratio)| ratio);
+    let smallest = ratios().reduce(f64::min)?;
+    let largest = ratios().reduce(f64::max)?;
+    let off = tests.iter().filter(|(_, ratio)| !HOLDS.contains(ratio));
+    let longest = off.map(|&(predicted, _)| predicted).reduce(f64::max);
+    let count = tests.len();
     let tested = if count == 1 { "1 was".to_owned() } else { format!("{count} were") };
-    let warning = !HOLDS.contains(&smallest) || !HOLDS.contains(&largest);
-    let verdict = if warning { "No" } else { "Yes" };
+    let verdict = if longest.is_some() { "No" } else { "Yes" };
+    let which = longest.map_or(String::new(), |longest| {
+        let longest = short_time(longest);
+        format!(
+            " The longest prediction that failed is {longest}; short runs pay for the start of \
+             every call, long ones for a machine that others use."
+        )
+    });
     Some(Answer {
         question: "Do the predictions hold?",
         text: format!(
             "{verdict}: {tested} put to the test with other random numbers; measured times were \
-             {smallest:.2} to {largest:.2} of the predicted ones."
+             {smallest:.2} to {largest:.2} of the predicted ones.{which}"
         ),
-        warning,
+        warning: longest.is_some(),
     })
 }
 
@@ -237,15 +244,14 @@ fn trust(study: &Study) -> Answer {
         format!("Only down to errors of about {}:", rounded_percent(bias / NEGLIGIBLE, 1))
     };
     let differs = if bias == 0.0 {
-        "does not differ from the f64 one".to_owned()
+        "is the f64 one in each channel".to_owned()
     } else {
-        format!("differs from the f64 one by less than {} of it", tiny(bias))
+        format!("differs from the f64 one by less than {} of it in each channel", tiny(bias))
     };
     calm(
         question,
         format!(
-            "{verdict} on the same {} samples per pixel the image mean {differs} in each channel. \
-             {slower} (`candor verify` tests more.)",
+            "{verdict} on the same {} samples per pixel the image mean {differs}. {slower} (`candor verify` tests more.)",
             twin.samples,
         ),
     )
@@ -276,7 +282,8 @@ pub(super) fn notes() -> [String; 5] {
         format!(
             "A warning comes where a slope is not {EXPECTED} or realised errors are not the stated \
              ones at a confidence of {}, and off by more than {MATTERS} or {}, which would change \
-             predicted times by about a tenth.",
+             predicted times by about a tenth. The noise must be spread over {MIN_VARYING} pixels or \
+             more for one.",
             rounded_percent(WARNING_CONFIDENCE, 3),
             rounded_percent(RATIO_MATTERS, 1),
         ),
