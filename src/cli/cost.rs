@@ -1,13 +1,13 @@
 //! `candor cost`: what accuracy costs in time on this device.
 
-use super::args::{CostArgs, DeviceChoice, SamplingArgs};
+use super::args::{CostArgs, DeviceChoice, EstimatorChoice, SamplingArgs};
 use super::choose::Chosen;
 use super::phases::Phases;
 use super::{
     DONE, INTERRUPTED, Refusal, choose, cost_table, interrupt, memory, refuse, setup, streams,
     units,
 };
-use crate::cost::{CostError, Study, Tracers, Watch, bytes_per_pixel, study};
+use crate::cost::{CostError, Study, Tracers, Watch, bytes_per_pixel, resolvable, study};
 use crate::cpu::CpuTracer;
 use crate::report::cost::{CostReport, check_folder};
 use crate::scene::Scene;
@@ -17,10 +17,13 @@ use std::path::PathBuf;
 
 pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     let common = &args.common;
-    let scene = setup::load(common, &SamplingArgs::default())?;
+    // No estimator is named: each is checked on its own.
+    let every = SamplingArgs { estimator: Some(EstimatorChoice::Auto), ..SamplingArgs::default() };
+    let scene = setup::load(common, &every)?;
     if !scene.has_lights() {
         return refuse("the scene has no lights: it is black everywhere, at no cost");
     }
+    let scene = resolvable(scene)?;
     check_folder(&args.output)?;
     let needed = u64::from(scene.size().pixels()) * bytes_per_pixel();
     memory::check(scene.size(), needed)?;
@@ -41,15 +44,14 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     interrupt::writing_begins();
     let name = common.scene.file_name().unwrap_or_default().to_string_lossy();
     let report = CostReport { scene: &name, tracer: &description, study: &measured };
-    let mut files = report.write(&args.output)?;
-    for file in &mut files {
-        // In the current folder, files are called by their bare names.
-        if let Ok(bare) = file.strip_prefix(".") {
-            *file = bare.to_owned();
-        }
-    }
+    let written = report.write(&args.output);
+    // In the current folder, files are called by their bare names.
+    let bare = |file: &PathBuf| file.strip_prefix(".").unwrap_or(file).to_owned();
+    let files: Vec<PathBuf> = written.iter().flatten().map(bare).collect();
+    // What was measured is not lost where the files cannot be written.
     let results = if common.json { json(&report, &files) } else { text(&report, &files) };
     streams::results(&results)?;
+    written?;
     Ok(if measured.interrupted { INTERRUPTED } else { DONE })
 }
 
@@ -90,7 +92,12 @@ fn json(report: &CostReport, outputs: &[PathBuf]) -> String {
 }
 
 fn text(report: &CostReport, files: &[PathBuf]) -> String {
-    let written = files.iter().map(|file| format!("wrote {}", file.display()));
-    let tables = cost_table::tables(report);
-    written.chain([String::new(), tables]).collect::<Vec<_>>().join("\n")
+    let mut text = String::new();
+    for file in files {
+        text += &format!("wrote {}\n", file.display());
+    }
+    if !files.is_empty() {
+        text += "\n";
+    }
+    text + &cost_table::tables(report)
 }

@@ -1,7 +1,8 @@
 //! The tables of `candor cost` on the terminal.
 
-use crate::cost::{Measured, Study, TARGETS};
+use crate::cost::{Study, TARGETS};
 use crate::report::cost::CostReport;
+use crate::report::cost::cells::{efficiency, missing_light, relative, unpredicted, variance};
 use crate::units::{rounded_percent, short_time, significant};
 
 /// Width that answers are wrapped to.
@@ -47,15 +48,11 @@ fn estimators(study: &Study) -> String {
     let mut rows = vec![head.map(str::to_owned).to_vec()];
     for cost in &study.estimators {
         let seconds = &cost.seconds_per_sample;
-        let unproven = || "unproven".to_owned();
-        let efficiency = cost.noise.and_then(|noise| noise.efficiency);
         rows.push(vec![
             cost.estimator.name().to_owned(),
             relative(seconds, &significant(1e-6 / seconds.value, 3)),
-            cost.noise.map_or_else(unproven, |noise| {
-                relative(&noise.variance, &significant(noise.variance.value, 3))
-            }),
-            efficiency.map_or_else(unproven, |e| relative(&e, &format!("{:.2e}/s", e.value))),
+            variance(cost),
+            efficiency(cost, "/s"),
             cost.slope.map_or("-".to_owned(), |slope| {
                 format!("{:.3} .. {:.3}", slope.slope.low, slope.slope.high)
             }),
@@ -72,7 +69,7 @@ fn predictions(study: &Study) -> String {
     for cost in &study.estimators {
         let mut row = vec![cost.estimator.name().to_owned()];
         if cost.predictions.is_empty() {
-            row.extend(TARGETS.map(|_| "unproven".to_owned()));
+            row.extend(TARGETS.map(|_| unpredicted(cost).to_owned()));
         }
         row.extend(cost.predictions.iter().map(|prediction| {
             let seconds = short_time(prediction.seconds.value);
@@ -94,19 +91,11 @@ fn ladder(study: &Study) -> String {
         rows.push(vec![
             rung.bounces.to_string(),
             relative(seconds, &significant(1e9 * seconds.value, 3)),
-            rung.missing.map_or("the measure".to_owned(), |missing| {
-                let half = (missing.high - missing.low) / 2.0;
-                format!("{:.3} ± {:.3} %", 100.0 * missing.value, 100.0 * half)
-            }),
+            missing_light(rung, study),
             rung.seconds_to_one_percent.map_or("unproven".to_owned(), short_time),
         ]);
     }
     aligned(&rows)
-}
-
-/// A value with half the width of its interval, relative.
-fn relative(measured: &Measured, value: &str) -> String {
-    format!("{value} ± {}", rounded_percent(measured.relative_half_width(), 2))
 }
 
 /// Columns side by side, the first flush left, the others flush right.

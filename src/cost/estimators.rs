@@ -15,6 +15,10 @@ pub const TARGETS: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
 /// may be most of it.
 const MIN_HITS: f64 = 100.0;
 
+/// Realised errors are judged from so many effective pixels that vary on: a point's logarithm
+/// is then known to 1/√(2·100) = 7 %, close enough to normal for odds of one in a thousand.
+pub const MIN_VARYING: f64 = 100.0;
+
 /// What one estimator costs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EstimatorCost {
@@ -27,6 +31,9 @@ pub struct EstimatorCost {
     pub seconds_per_sample: Measured,
     /// Pixels to which no sample has contributed.
     pub unproven_pixels: u64,
+    /// Effective number of pixels that hold the noise; slope and agreement are never suspect
+    /// below [`MIN_VARYING`].
+    pub varying_pixels: f64,
     /// What is known of the noise; `None` where too few samples have met light.
     pub noise: Option<Noise>,
     /// Realised errors of the halves, at doubling counts.
@@ -38,7 +45,8 @@ pub struct EstimatorCost {
     /// Time for an error over that of the cheapest estimator, from the same rounds; `None`
     /// where either is unknown or without variance.
     pub beside_cheapest: Option<Measured>,
-    /// Predicted times to [`TARGETS`]; empty where the noise is not known.
+    /// Predicted times to [`TARGETS`]; empty where the noise is not known, and where there is
+    /// none.
     pub predictions: Vec<Prediction>,
 }
 
@@ -70,6 +78,12 @@ pub struct Prediction {
 }
 
 impl EstimatorCost {
+    /// Whether all samples of a pixel were alike: there is no error to bring down.
+    #[must_use]
+    pub fn is_noiseless(&self) -> bool {
+        self.price() == Some(0.0)
+    }
+
     /// Variance times seconds per sample, what an error costs; `None` where it is unknown.
     #[must_use]
     pub fn price(&self) -> Option<f64> {
@@ -148,19 +162,29 @@ impl Contestant {
             let efficiency = (value > 0.0).then(|| combined.interval(1.0 / value / seconds));
             (Noise { variance: error.interval(value), efficiency, error }, combined)
         });
-        let predictions = noise.map_or(Vec::new(), |(noise, error)| {
+        let noisy = noise.filter(|(noise, _)| noise.variance.value > 0.0);
+        let predictions = noisy.map_or(Vec::new(), |(noise, error)| {
             let frame = seconds * pixels;
             TARGETS.map(|target| predict(target, noise.variance.value, frame, error)).to_vec()
         });
-        let convergence = if noise.is_some() { self.growth.points(&end) } else { Vec::new() };
+        let convergence = noisy.map_or(Vec::new(), |_| self.growth.points(&end));
+        let varying_pixels = end.varying_pixels();
+        let mut slope = fit(&convergence);
+        let mut agreement =
+            noise.and_then(|(noise, _)| agreement(&convergence, noise.variance.value));
+        if varying_pixels < MIN_VARYING {
+            slope = slope.map(|slope| Slope { suspect: false, ..slope });
+            agreement = agreement.map(|found| Agreement { suspect: false, ..found });
+        }
         Ok(EstimatorCost {
             estimator: self.estimator,
             samples: end.samples,
             seconds_per_sample: time_error.interval(seconds),
             unproven_pixels: end.unproven,
             noise: noise.map(|(noise, _)| noise),
-            slope: fit(&convergence),
-            agreement: noise.and_then(|(noise, _)| agreement(&convergence, noise.variance.value)),
+            varying_pixels,
+            slope,
+            agreement,
             convergence,
             beside_cheapest: None,
             predictions,

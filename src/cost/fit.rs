@@ -39,6 +39,13 @@ impl Point {
     pub fn interval(&self) -> Measured {
         LogError::known(self.uncertainty).interval(self.error)
     }
+
+    /// Logarithm of the error without its bias: ln √(χ²/k) is 1/(2k) = u² too small on
+    /// average, where χ² has k degrees of freedom and its root the relative standard error u
+    /// (Bartlett & Kendall 1946).
+    fn log(&self) -> f64 {
+        self.error.ln() + self.uncertainty.powi(2)
+    }
 }
 
 /// A fitted slope of log error against log samples.
@@ -75,7 +82,7 @@ pub fn agreement(points: &[Point], variance: f64) -> Option<Agreement> {
     }
     let weights = points.iter().map(|point| point.uncertainty.powi(2).recip());
     let total: f64 = weights.clone().sum();
-    let logs = points.iter().map(|p| (p.error / (variance / p.samples as f64).sqrt()).ln());
+    let logs = points.iter().map(|p| p.log() - (variance / p.samples as f64).sqrt().ln());
     let mean = weights.zip(logs).map(|(weight, log)| weight * log).sum::<f64>() / total;
     let error = LogError::known(total.sqrt().recip());
     let certain = mean.abs() > student(error.freedom, WARNING_CONFIDENCE) * error.error;
@@ -94,7 +101,7 @@ pub fn fit(points: &[Point]) -> Option<Slope> {
     }
     let logs = points.iter().map(|point| {
         let weight = point.uncertainty.powi(2).recip();
-        (weight, (point.samples as f64).ln(), point.error.ln())
+        (weight, (point.samples as f64).ln(), point.log())
     });
     let total: f64 = logs.clone().map(|(w, _, _)| w).sum();
     let mean_x = logs.clone().map(|(w, x, _)| w * x).sum::<f64>() / total;
@@ -140,14 +147,15 @@ mod tests {
         }
     }
 
-    /// Errors 3·samples^slope at 2, 4, …, 256 samples, each with its own uncertainty.
+    /// Errors 3·samples^slope at 2, 4, …, 256 samples, each with its own uncertainty and with
+    /// the mean square that it must have.
     #[expect(clippy::cast_precision_loss, reason = "small counts")]
     fn points(random: &mut Uniform, slope: f64) -> Vec<Point> {
         let point = |k: u32| {
             let uncertainty = 0.01 + 0.01 * f64::from(k % 3);
             let samples = 1_u64 << k;
             let error = 3.0 * (samples as f64).powf(slope);
-            let error = error * (uncertainty * random.normal()).exp();
+            let error = error * (uncertainty * (random.normal() - uncertainty)).exp();
             Point { samples, error, uncertainty }
         };
         (1..=8).map(point).collect()
@@ -184,6 +192,22 @@ mod tests {
             let found = agreement(&points(&mut random, -0.5), 9.0 / 1.21).expect("eight points");
             assert!(found.suspect, "{found:?}");
         }
+    }
+
+    /// Roots of χ² with 8 degrees of freedom, all of them uncertain by 1/√16: their mean
+    /// logarithm is off by -1/16, twice five standard errors of 2000 points.
+    #[test]
+    fn few_degrees_of_freedom_do_not_lower_the_ratio() {
+        let mut random = Uniform(4);
+        let points: Vec<Point> = (0..2000)
+            .map(|_| {
+                let squares: f64 = (0..8).map(|_| random.normal().powi(2)).sum();
+                Point { samples: 1, error: (squares / 8.0).sqrt(), uncertainty: 0.25 }
+            })
+            .collect();
+        let found = agreement(&points, 1.0).expect("points");
+        let five_errors = 5.0 * 0.25 / 2000_f64.sqrt();
+        assert!(found.ratio.value.ln().abs() < five_errors, "{found:?}");
     }
 
     #[test]

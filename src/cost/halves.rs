@@ -68,6 +68,14 @@ impl Snapshot {
         self.average(|pixel| pixel.deviations) / (self.samples as f64 - 1.0)
     }
 
+    /// Effective number of pixels that hold the noise: (Σσ²)²/Σσ⁴, with which the squares of
+    /// normal deviations scatter; 0 where no pixel varies.
+    pub fn varying_pixels(&self) -> f64 {
+        let squares: f64 = self.pixels.iter().map(|pixel| pixel.deviations.powi(2)).sum();
+        let sum: f64 = self.pixels.iter().map(|pixel| pixel.deviations).sum();
+        if squares > 0.0 { sum * sum / squares } else { 0.0 }
+    }
+
     fn average(&self, of: impl Fn(&Pixel) -> f64) -> f64 {
         self.pixels.iter().map(of).sum::<f64>() / self.count()
     }
@@ -342,7 +350,9 @@ mod tests {
                 Some(growth) => growth.look(&film),
             }
         }
-        let batches = growth.expect("four samples").batches(&Snapshot::of(&film));
+        let end = Snapshot::of(&film);
+        assert!((end.varying_pixels() - 1.0).abs() < 1e-12, "{}", end.varying_pixels());
+        let batches = growth.expect("four samples").batches(&end);
         let found: Vec<_> = batches.iter().map(|b| (b.samples, b.variance)).collect();
         assert_eq!(found.len(), 2);
         for ((samples, variance), expected) in found.into_iter().zip([2.0, 8.0]) {

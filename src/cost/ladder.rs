@@ -24,9 +24,10 @@ pub struct Rung {
     /// Seconds for one sample.
     pub seconds_per_sample: Measured,
     /// Share of the deepest rung's mean luminance that is missing; `None` for that rung
-    /// itself, and where no light was found.
+    /// itself, and on every rung where that one's light is not certainly above zero.
     pub missing: Option<Measured>,
-    /// Seconds to a relative RMS error of 1 %, `None` where no light was found.
+    /// Seconds to a relative RMS error of 1 %, at least those of the two samples that an error
+    /// bar needs; `None` where no light was found.
     pub seconds_to_one_percent: Option<f64>,
 }
 
@@ -100,20 +101,25 @@ fn judge(climbs: Vec<Climb>, scene: &Scene) -> Result<Vec<Rung>, CostError> {
         // The error squared times the time that it took: what the error of 1 costs.
         #[expect(clippy::cast_precision_loss, reason = "a count of samples")]
         let price = |error: f64| error * error * frame * summary.samples as f64;
+        let to_one_percent = |error: f64| (price(error) * 1e4).max(2.0 * frame);
         means.push(summary.luminance_error.map(|error| (summary.luminance, error)));
         rungs.push(Rung {
             bounces: climb.bounces,
             estimator: scene.settings().estimator(),
             seconds_per_sample: per_sample,
             missing: None,
-            seconds_to_one_percent: summary.relative_error.map(|error| price(error) * 1e4),
+            seconds_to_one_percent: summary.relative_error.map(to_one_percent),
         });
     }
-    if let Some((Some(deepest), shallower)) = means.split_last() {
+    let measure = means.split_last().and_then(|(deepest, shallower)| {
+        let certain = |(mean, error): &(f64, f64)| *mean > deviations() * error;
+        Some((deepest.filter(certain)?, shallower))
+    });
+    if let Some((deepest, shallower)) = measure {
         for (rung, mean) in rungs.iter_mut().zip(shallower) {
             // A rung that found nothing has no error bar of its own; it may be all black.
             let mean = mean.unwrap_or((0.0, 0.0));
-            rung.missing = Some(missing(mean, *deepest));
+            rung.missing = Some(missing(mean, deepest));
         }
     }
     Ok(rungs)
@@ -124,8 +130,12 @@ fn judge(climbs: Vec<Climb>, scene: &Scene) -> Result<Vec<Rung>, CostError> {
 fn missing((a, error_a): (f64, f64), (b, error_b): (f64, f64)) -> Measured {
     let ratio = a / b;
     let error = error_a.hypot(ratio * error_b) / b;
-    let half_width = student(f64::INFINITY, CONFIDENCE) * error;
-    Measured::around(1.0 - ratio, half_width)
+    Measured::around(1.0 - ratio, deviations() * error)
+}
+
+/// Half the width of an interval, in standard errors.
+fn deviations() -> f64 {
+    student(f64::INFINITY, CONFIDENCE)
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ mod strip;
 mod study;
 mod twin;
 
-pub use estimators::{EstimatorCost, Noise, Prediction, TARGETS};
+pub use estimators::{EstimatorCost, MIN_VARYING, Noise, Prediction, TARGETS};
 pub use fit::{
     Agreement, EXPECTED, MATTERS, Point, RATIO_MATTERS, Slope, WARNING_CONFIDENCE, agreement, fit,
 };
@@ -25,7 +25,7 @@ pub use ladder::{RUNGS, Rung};
 pub use plan::{MIN_BUDGET, Phase, Plan};
 pub use race::affordable;
 pub use strip::{STRIP_COUNTS, STRIP_SIDE, Strip, StripPicture};
-pub use study::{LeftOut, Study, study};
+pub use study::{LeftOut, Study, resolvable, study};
 pub use twin::TwinCost;
 
 use crate::film::BYTES_PER_PIXEL;

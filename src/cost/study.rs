@@ -9,7 +9,7 @@ use super::strip::{Strip, strip, strip_size};
 use super::twin::{TwinCost, compare};
 use super::{CostError, MakeTracer, Tracers, Watch};
 use crate::bound;
-use crate::scene::{Estimator, Scene};
+use crate::scene::{Estimator, Invalid, Scene};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
@@ -70,7 +70,25 @@ impl Study {
     }
 }
 
-/// Studies a scene that has lights within a budget. Interrupted after the pilot, it returns
+/// The scene with its own estimator where the film resolves that one's samples, and else with
+/// the last one that is resolved, which looks for light wherever it goes.
+///
+/// # Errors
+/// If none is resolved; what each of them would take.
+pub fn resolvable(scene: Scene) -> Result<Scene, Invalid> {
+    if bound::check(&scene).is_ok() {
+        return Ok(scene);
+    }
+    let (estimators, left_out) = resolved(&scene);
+    let Some(&estimator) = estimators.last() else {
+        let why = left_out.iter().map(|left_out| format!("{}: {}", left_out.what, left_out.why));
+        return Err(Invalid(why.collect::<Vec<_>>().join("; ")));
+    };
+    let settings = scene.settings().with_estimator(estimator);
+    Ok(scene.with_settings(settings))
+}
+
+/// Studies a [`resolvable`] scene that has lights within a budget. Interrupted after the pilot, it returns
 /// what is complete.
 ///
 /// # Errors
@@ -85,7 +103,8 @@ pub fn study(
     let started = Instant::now();
     let mut study = empty(scene, plan);
     let slot = Slot::new(Phase::Pilot, plan.length(Phase::Pilot));
-    let estimators = resolved(scene, &mut study);
+    let (estimators, left_out) = resolved(scene);
+    study.left_out = left_out;
     probe(scene, estimators.len(), tracers.device, &slot)?;
     study.estimators = pilot(scene, &estimators, tracers.device, &slot, watch)?;
     study.used = study.cheapest().map_or(study.used, |cost| cost.estimator);
@@ -133,17 +152,20 @@ fn probe(
     slot.restarted().check(5.0 * estimators as f64 * enlarged * timed.pace())
 }
 
-/// The estimators whose samples the film resolves.
-fn resolved(scene: &Scene, study: &mut Study) -> Vec<Estimator> {
-    let resolves = |&estimator: &Estimator| {
+/// The estimators whose samples the film resolves, and why it does not resolve the others.
+fn resolved(scene: &Scene) -> (Vec<Estimator>, Vec<LeftOut>) {
+    let (mut estimators, mut left_out) = (Vec::new(), Vec::new());
+    for estimator in Estimator::ALL {
         let settings = scene.settings().with_estimator(estimator);
-        let refused = bound::check(&scene.clone().with_settings(settings)).err();
-        if let Some(error) = &refused {
-            study.leave_out(format!("estimator {}", estimator.name()), error);
+        match bound::check(&scene.clone().with_settings(settings)) {
+            Ok(()) => estimators.push(estimator),
+            Err(error) => left_out.push(LeftOut {
+                what: format!("estimator {}", estimator.name()),
+                why: error.to_string(),
+            }),
         }
-        refused.is_none()
-    };
-    Estimator::ALL.into_iter().filter(resolves).collect()
+    }
+    (estimators, left_out)
 }
 
 /// What follows the pilot, with the cheapest estimator.

@@ -4,7 +4,7 @@ use super::estimators::by_name;
 use super::interval::{LogError, Measured};
 use super::stopwatch::{Slot, Timed, shortest, take_turns};
 use super::{CostError, MakeTracer, Watch};
-use crate::estimate::pair;
+use crate::estimate::{pair, summarize};
 use crate::scene::{Estimator, Scene};
 use serde::Serialize;
 
@@ -22,19 +22,20 @@ pub struct TwinCost {
     pub twin_seconds_per_sample: Measured,
     /// How many times longer the twin takes.
     pub slowdown: Measured,
-    /// Device minus twin over the twin's image mean, for each channel.
-    pub bias: [f64; 3],
-    /// Its standard error, from paths that rounding sent elsewhere.
-    pub bias_error: [f64; 3],
+    /// Device minus twin over the twin's image mean, for each channel; `None` where one of
+    /// them found no light, so that there is nothing to compare.
+    pub bias: Option<[f64; 3]>,
+    /// Its standard error, from paths that rounding sent elsewhere; `None` with the bias.
+    pub bias_error: Option<[f64; 3]>,
 }
 
 impl TwinCost {
     /// The largest deviation that the samples allow, over all channels: |bias| and twice
-    /// its error.
+    /// its error; `None` without light.
     #[must_use]
-    pub fn largest_bias(&self) -> f64 {
-        let channels = self.bias.iter().zip(self.bias_error);
-        channels.map(|(bias, error)| bias.abs() + 2.0 * error).fold(0.0, f64::max)
+    pub fn largest_bias(&self) -> Option<f64> {
+        let channels = self.bias?.into_iter().zip(self.bias_error?);
+        Some(channels.map(|(bias, error)| bias.abs() + 2.0 * error).fold(0.0, f64::max))
     }
 }
 
@@ -68,7 +69,9 @@ pub(super) fn compare(
         Ok(())
     })?;
     let [mut device, mut twin] = both;
-    let paired = pair(&device.tracer().film()?, &twin.tracer().film()?);
+    let films = [device.tracer().film()?, twin.tracer().film()?];
+    let lit = films.iter().all(|film| summarize(film).luminance > 0.0);
+    let paired = lit.then(|| pair(&films[0], &films[1]));
     let (ours, our_error) = device.per_sample();
     let (theirs, their_error) = twin.per_sample();
     Ok(TwinCost {
@@ -77,7 +80,7 @@ pub(super) fn compare(
         device_seconds_per_sample: our_error.interval(ours),
         twin_seconds_per_sample: their_error.interval(theirs),
         slowdown: LogError::of_product(&[our_error, their_error]).interval(theirs / ours),
-        bias: paired.bias,
-        bias_error: paired.error,
+        bias: paired.map(|paired| paired.bias),
+        bias_error: paired.map(|paired| paired.error),
     })
 }

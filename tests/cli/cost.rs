@@ -1,7 +1,7 @@
 //! `candor cost`: what it writes, prints and refuses. Nothing here depends on how fast the
 //! machine is.
 
-use crate::candor::{Folder, Running, dark_scene};
+use crate::candor::{Folder, Running, SCENE, dark_scene};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -136,6 +136,86 @@ fn what_met_no_light_is_unproven() {
     }
     assert!(["explicit", "mis"].contains(&json["used"].as_str().unwrap_or("")), "{json:?}");
     assert!(text(&folder, "cost.html").contains("unproven"));
+}
+
+/// The camera stands in a closed grey sphere, the lamp outside: no sample finds light, and
+/// nothing is called good, or zero, or the measure of something.
+#[test]
+fn a_picture_without_light_proves_nothing() {
+    let folder = Folder::new();
+    let wall = "[[spheres]]\ncenter = [0.0, 1.0, 5.0]\nradius = 0.5\nmaterial = \"grey\"\n\n";
+    let lamp = "[[spheres]]\nname = \"lamp\"";
+    folder.write("closed.toml", &SCENE.replace(lamp, &format!("{wall}{lamp}")));
+    let ended = folder.candor("cost closed.toml --budget 5s --json --device gpu").with_code(0);
+    let json = ended.json();
+    for rung in json["ladder"].as_array().expect("a ladder") {
+        assert!(rung["missing"].is_null() && rung["seconds_to_one_percent"].is_null(), "{rung}");
+    }
+    let twin = &json["twin"];
+    assert!(twin["slowdown"]["value"].is_number(), "{twin}");
+    assert!(twin["bias"].is_null() && twin["bias_error"].is_null(), "{twin}");
+    let page = text(&folder, "cost.html");
+    assert!(page.contains("Unproven: in ") && !page.contains("the measure"), "{page}");
+    assert!(!page.contains("<dd>Yes"), "{page}");
+    for absent in ["missing_light", "bias_", "seconds_to_one_percent", "NaN"] {
+        assert!(!text(&folder, "cost.csv").contains(absent), "{absent}");
+    }
+}
+
+/// The camera stands in the lamp: all samples are alike, which is no noise and not no number.
+#[test]
+fn a_picture_without_noise_needs_no_predictions() {
+    let folder = Folder::new();
+    let around = "center = [0.0, 1.0, 5.0]\nradius = 0.5";
+    folder.write("inside.toml", &SCENE.replace("center = [0.0, 3.0, 0.0]\nradius = 1.5", around));
+    let arguments = "cost inside.toml --budget 5s --quiet --device cpu";
+    let results = folder.candor(arguments).silently_done();
+    let found = |part: &str| results.matches(part).count();
+    assert_eq!(found("NaN"), 0, "{results}");
+    // Four estimators, each with its efficiency and five targets.
+    assert_eq!(found("no noise  ") + found("no noise\n"), 4 * 6, "{results}");
+    assert!(found(" none ") >= 4 && found(" 0 s") == 0, "{results}");
+    let table = text(&folder, "cost.csv");
+    assert!(!table.contains("NaN") && !table.contains("prediction"), "{table}");
+    assert!(!text(&folder, "cost.html").contains("± NaN"));
+    assert!(text(&folder, "cost.svg").contains("no noise"));
+}
+
+/// Bright walls and many bounces are more than the film resolves of some estimators; the
+/// others go on, and their reason is given.
+#[test]
+fn estimators_that_the_film_refuses_are_left_out() {
+    let folder = Folder::new();
+    folder.write("bright.toml", &SCENE.replace("[0.5, 0.5, 0.5]\n\n", "[0.95, 0.95, 0.95]\n\n"));
+    let arguments = "cost bright.toml --bounces 64 --budget 5s --device cpu --json";
+    let json = folder.candor(arguments).with_code(0).json();
+    let costs = json["estimators"].as_array().expect("estimators");
+    let names: Vec<_> = costs.iter().filter_map(|cost| cost["estimator"].as_str()).collect();
+    assert!(!names.contains(&"implicit") && names.contains(&"mis"), "{names:?}");
+    let used = json["used"].as_str().expect("a name");
+    assert!(names.contains(&used), "{used}");
+    let left_out = json["left_out"].as_array().expect("a list");
+    let implicit = left_out.iter().find(|left_out| left_out["what"] == "estimator implicit");
+    let why = implicit.and_then(|left_out| left_out["why"].as_str()).expect("implicit");
+    assert!(why.contains("takes at most"), "{why}");
+    for strip in json["strips"].as_array().expect("strips") {
+        assert_ne!(strip["estimator"], "implicit");
+    }
+}
+
+/// The folder is gone when the files are to be written: what was measured is still said.
+#[test]
+fn results_outlive_files_that_cannot_be_written() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("out")).expect("a folder can be made");
+    let arguments = "cost scene.toml --budget 5s --device cpu -o out";
+    let mut running = Running::start(&mut folder.command(arguments));
+    running.wait_for("\nbounce ladder\n");
+    std::fs::remove_dir(folder.path("out")).expect("an empty folder can be removed");
+    let ended = running.end().with_code(2);
+    assert!(ended.stdout.contains("Which estimator?"), "{}", ended.stdout);
+    assert!(!ended.stdout.contains("wrote"), "{}", ended.stdout);
+    assert!(ended.stderr.contains("error: "), "{}", ended.stderr);
 }
 
 #[test]

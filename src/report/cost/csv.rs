@@ -75,9 +75,10 @@ fn study(rows: &mut Rows, study: &Study) -> Result<(), String> {
         rows.measured(at("device_seconds_per_sample", "s"), &twin.device_seconds_per_sample)?;
         rows.measured(at("twin_seconds_per_sample", "s"), &twin.twin_seconds_per_sample)?;
         rows.measured(at("slowdown", "1"), &twin.slowdown)?;
-        for (c, name) in ["bias_r", "bias_g", "bias_b"].into_iter().enumerate() {
-            let bias = Measured::around(twin.bias[c], 1.96 * twin.bias_error[c]);
-            rows.measured(at(name, "1"), &bias)?;
+        let channels = ["bias_r", "bias_g", "bias_b"].into_iter();
+        let biases = twin.bias.into_iter().flatten().zip(twin.bias_error.into_iter().flatten());
+        for (name, (bias, error)) in channels.zip(biases) {
+            rows.measured(at(name, "1"), &Measured::around(bias, 1.96 * error))?;
         }
     }
     for strip in &study.strips {
@@ -108,6 +109,7 @@ fn estimator(rows: &mut Rows, cost: &EstimatorCost) -> Result<(), String> {
     rows.number(labels("samples_per_pixel", "1"), cost.samples as f64)?;
     rows.measured(labels("seconds_per_sample", "s"), &cost.seconds_per_sample)?;
     rows.number(labels("unproven_pixels", "1"), cost.unproven_pixels as f64)?;
+    rows.number(labels("varying_pixels", "1"), cost.varying_pixels)?;
     if let Some(noise) = &cost.noise {
         rows.measured(labels("relative_variance", "1"), &noise.variance)?;
         if let Some(efficiency) = &noise.efficiency {

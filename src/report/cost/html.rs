@@ -1,5 +1,6 @@
 //! `cost.html`: the report to read, in one file without scripts.
 
+use super::cells::{efficiency, missing_light, relative, unpredicted, variance};
 use super::{CostReport, MARK, reading};
 use crate::cost::{EstimatorCost, Measured, Strip, Study, TARGETS};
 use crate::report::{Picture, png};
@@ -100,24 +101,15 @@ fn table_of(head: &[&str], rows: &[Vec<String>]) -> Markup {
     }
 }
 
-/// A value with half the width of its interval, relative.
-fn relative(measured: &Measured, value: &str) -> String {
-    format!("{value} ± {}", rounded_percent(measured.relative_half_width(), 2))
-}
-
 fn estimators(study: &Study) -> Markup {
     let pixels = u64::from(study.width) * u64::from(study.height);
     let rows = study.estimators.iter().map(|cost| {
         let seconds = &cost.seconds_per_sample;
-        let unproven = || "unproven".to_owned();
-        let efficiency = cost.noise.and_then(|noise| noise.efficiency);
         vec![
             cost.estimator.name().to_owned(),
             relative(seconds, &significant(1e-6 / seconds.value, 3)),
-            cost.noise.map_or_else(unproven, |noise| {
-                relative(&noise.variance, &significant(noise.variance.value, 3))
-            }),
-            efficiency.map_or_else(unproven, |e| relative(&e, &format!("{:.2e}", e.value))),
+            variance(cost),
+            efficiency(cost, ""),
             cost.beside_cheapest.map_or("—".to_owned(), |ratio| {
                 relative(&ratio, &format!("×{}", significant(ratio.value, 3)))
             }),
@@ -146,7 +138,7 @@ fn predictions(study: &Study) -> Markup {
         html! {
             tr {
                 td { (cost.estimator.name()) }
-                @if cost.predictions.is_empty() { td colspan=(TARGETS.len()) { "unproven" } }
+                @if cost.predictions.is_empty() { td colspan=(TARGETS.len()) { (unpredicted(cost)) } }
                 @for prediction in &cost.predictions {
                     td {
                         (short_time(prediction.seconds.value))
@@ -178,10 +170,7 @@ fn ladder(study: &Study) -> Markup {
         vec![
             rung.bounces.to_string(),
             relative(seconds, &significant(1e9 * seconds.value, 3)),
-            rung.missing.map_or("the measure".to_owned(), |missing| {
-                let half = (missing.high - missing.low) / 2.0;
-                format!("{:.3} ± {:.3} %", 100.0 * missing.value, 100.0 * half)
-            }),
+            missing_light(rung, study),
             rung.seconds_to_one_percent.map_or("unproven".to_owned(), short_time),
         ]
     });
@@ -205,8 +194,10 @@ fn twin(study: &Study) -> Markup {
         ],
     ];
     for (c, name) in ["red", "green", "blue"].into_iter().enumerate() {
-        let (bias, error) = (twin.bias[c], twin.bias_error[c]);
-        rows.push(vec![format!("bias of {name}"), format!("{bias:+.1e} ± {error:.1e}")]);
+        let bias = twin.bias.zip(twin.bias_error).map_or("unproven".to_owned(), |(bias, error)| {
+            format!("{:+.1e} ± {:.1e}", bias[c], error[c])
+        });
+        rows.push(vec![format!("bias of {name}"), bias]);
     }
     html! {
         (table_of(&["", "the same samples"], &rows))

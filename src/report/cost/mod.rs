@@ -1,5 +1,6 @@
 //! The report of a study: `cost.csv`, `cost.svg`, `cost.png` and `cost.html`.
 
+pub(crate) mod cells;
 mod csv;
 mod html;
 mod plot;

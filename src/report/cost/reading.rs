@@ -1,9 +1,11 @@
 //! A study in sentences: the questions that it is made for, and its answers.
 
 use crate::cost::{
-    CONFIDENCE, EXPECTED, EstimatorCost, MATTERS, RATIO_MATTERS, Study, WARNING_CONFIDENCE,
+    CONFIDENCE, EXPECTED, EstimatorCost, MATTERS, MIN_VARYING, RATIO_MATTERS, Study,
+    WARNING_CONFIDENCE,
 };
 use crate::units::{rounded_percent, short_time, significant};
+use std::ops::RangeInclusive;
 
 /// A question and what a study says about it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,6 +20,10 @@ pub struct Answer {
 
 /// A bias below this share of the smallest target is too small to matter.
 const NEGLIGIBLE: f64 = 0.1;
+
+/// Predictions hold where measured times are in this range of them: half as long again at
+/// most, or the other way round.
+const HOLDS: RangeInclusive<f64> = 0.67..=1.5;
 
 pub(super) fn answers(study: &Study) -> Vec<Answer> {
     let mut answers = vec![which_estimator(study)];
@@ -50,6 +56,10 @@ fn which_estimator(study: &Study) -> Answer {
         let name = cost.estimator.name();
         match (cost.price(), cost.beside_cheapest) {
             (None, _) => format!("{name} is unproven"),
+            (Some(_), None) if best.is_noiseless() && cost.is_noiseless() => {
+                format!("{name} has none either, but is slower")
+            }
+            (Some(_), None) => format!("{name} has some"),
             (Some(_), Some(ratio)) if ratio.low > 1.0 => {
                 format!("{name} takes {} times as long", significant(ratio.value, 2))
             }
@@ -58,17 +68,28 @@ fn which_estimator(study: &Study) -> Answer {
     });
     let others = others.collect::<Vec<_>>().join(", ");
     let name = best.estimator.name();
-    calm(question, format!("{name}. For the same error {others}."))
+    let sense = if best.is_noiseless() { "It has no noise;" } else { "For the same error" };
+    calm(question, format!("{name}. {sense} {others}."))
 }
 
 fn next_digit(best: &EstimatorCost) -> Answer {
+    let question = "What does the next digit cost?";
+    if best.is_noiseless() {
+        let text = format!(
+            "Nothing: with {} all {} samples of each pixel were alike. There is no noise, and the \
+             fewest samples do.",
+            best.estimator.name(),
+            best.samples,
+        );
+        return calm(question, text);
+    }
     let times: Vec<String> = best
         .predictions
         .iter()
         .map(|p| format!("{} in {}", rounded_percent(p.target, 1), short_time(p.seconds.value)))
         .collect();
     calm(
-        "What does the next digit cost?",
+        question,
         format!(
             "A tenth of the error takes a hundred times the time. With {}: {}.",
             best.estimator.name(),
@@ -106,6 +127,18 @@ fn error_bars(study: &Study) -> Option<Answer> {
         );
         return Some(Answer { question, text, warning: true });
     }
+    let noisy =
+        study.estimators.iter().filter(|cost| cost.price().is_some_and(|price| price > 0.0));
+    let few = noisy.filter(|cost| cost.varying_pixels < MIN_VARYING);
+    let few: Vec<&str> = few.map(|cost| cost.estimator.name()).collect();
+    if !few.is_empty() {
+        let text = format!(
+            "Too few pixels vary to tell, with {}: the noise must be spread over {MIN_VARYING} \
+             pixels or more. Give a larger --size.",
+            few.join(", ")
+        );
+        return Some(calm(question, text));
+    }
     let ratios = checked.iter().filter_map(|cost| Some(cost.agreement?.ratio.value));
     let (low, high) =
         ratios.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), r| (low.min(r), high.max(r)));
@@ -119,51 +152,70 @@ fn error_bars(study: &Study) -> Option<Answer> {
 }
 
 fn predictions(study: &Study) -> Option<Answer> {
-    let ratios: Vec<f64> = study
-        .estimators
-        .iter()
-        .flat_map(|cost| &cost.predictions)
-        .filter_map(|p| Some(p.measured? / p.seconds.value))
+    let predictions = study.estimators.iter().flat_map(|cost| &cost.predictions);
+    let tests: Vec<(f64, f64)> = predictions
+        .filter_map(|p| Some((p.seconds.value, p.measured? / p.seconds.value)))
         .collect();
-    if ratios.is_empty() {
-        return None;
-    }
-    let smallest = ratios.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = ratios.iter().copied().fold(0.0, f64::max);
-    let count = ratios.len();
+    let ratios = || tests.iter().map(|&(_, ratio)| ratio);
+    let smallest = ratios().reduce(f64::min)?;
+    let largest = ratios().reduce(f64::max)?;
+    let off = tests.iter().filter(|(_, ratio)| !HOLDS.contains(ratio));
+    let longest = off.map(|&(predicted, _)| predicted).reduce(f64::max);
+    let count = tests.len();
     let tested = if count == 1 { "1 was".to_owned() } else { format!("{count} were") };
-    Some(calm(
-        "Do the predictions hold?",
+    let verdict = if longest.is_some() { "No" } else { "Yes" };
+    let which = longest.map_or(String::new(), |longest| {
+        let longest = short_time(longest);
         format!(
-            "{tested} put to the test with other random numbers; measured times were {smallest:.2} \
-             to {largest:.2} of the predicted ones."
+            " The longest prediction that failed is {longest}; short runs pay for the start of \
+             every call, long ones for a machine that others use."
+        )
+    });
+    Some(Answer {
+        question: "Do the predictions hold?",
+        text: format!(
+            "{verdict}: {tested} put to the test with other random numbers; measured times were \
+             {smallest:.2} to {largest:.2} of the predicted ones.{which}"
         ),
-    ))
+        warning: longest.is_some(),
+    })
 }
 
 fn bounce_limit(study: &Study) -> Option<Answer> {
     let own = study.ladder.iter().find(|rung| rung.bounces == study.bounces)?;
     let deepest = study.ladder.last()?;
     let question = "What does the bounce limit cost?";
+    if study.ladder.iter().all(|rung| rung.missing.is_none()) {
+        let text =
+            format!("Unproven: too little light was found with {} bounces.", deepest.bounces);
+        return Some(calm(question, text));
+    }
     let Some(missing) = &own.missing else {
         return (own == deepest && own.seconds_to_one_percent.is_some()).then(|| {
             calm(question, format!("{} bounces are the most that were measured.", own.bounces))
         });
     };
     let slower = deepest.seconds_per_sample.value / own.seconds_per_sample.value;
+    let (own, deepest) = (own.bounces, deepest.bounces);
+    let share = 100.0 * missing.value;
+    let half = 50.0 * (missing.high - missing.low);
+    let found = if missing.low > 0.0 {
+        format!(
+            "{own} bounces miss {share:.2} ± {half:.2} % of the light that {deepest} bounces find, \
+             and no number of samples brings it back"
+        )
+    } else {
+        format!(
+            "None measurable: {own} bounces miss {share:.2} ± {half:.2} % of the light that \
+             {deepest} bounces find"
+        )
+    };
     Some(calm(
         question,
         format!(
-            "{} bounces miss {:.2} ± {:.2} % of the light that {} bounces find, and no number of \
-             samples brings it back; {} bounces take {} times as long for a sample. What lies \
-             beyond {} is not in these numbers.",
-            own.bounces,
-            100.0 * missing.value,
-            50.0 * (missing.high - missing.low),
-            deepest.bounces,
-            deepest.bounces,
+            "{found}; {deepest} bounces take {} times as long for a sample. What lies beyond \
+             {deepest} is not in these numbers.",
             significant(slower, 2),
-            deepest.bounces,
         ),
     ))
 }
@@ -175,22 +227,32 @@ fn trust(study: &Study) -> Answer {
         let reason = reason.map_or("interrupted before", |left_out| left_out.why.as_str());
         return calm(question, format!("Not measured: {reason}."));
     };
-    let bias = twin.largest_bias();
+    let slower =
+        format!("The f64 answer takes {} times as long.", significant(twin.slowdown.value, 2));
+    let Some(bias) = twin.largest_bias() else {
+        let text = format!(
+            "Unproven: in {} samples per pixel no light was found, and there is nothing to \
+             compare. {slower}",
+            twin.samples
+        );
+        return Answer { question, text, warning: true };
+    };
     let target = crate::cost::TARGETS.into_iter().fold(f64::INFINITY, f64::min);
     let verdict = if bias <= NEGLIGIBLE * target {
         format!("Yes, to {} and beyond:", rounded_percent(target, 1))
     } else {
         format!("Only down to errors of about {}:", rounded_percent(bias / NEGLIGIBLE, 1))
     };
+    let differs = if bias == 0.0 {
+        "is the f64 one in each channel".to_owned()
+    } else {
+        format!("differs from the f64 one by less than {} of it in each channel", tiny(bias))
+    };
     calm(
         question,
         format!(
-            "{verdict} on the same {} samples per pixel the image mean differs from the f64 one by \
-             less than {} of it in each channel. The f64 answer takes {} times as long. (`candor \
-             verify` tests more.)",
+            "{verdict} on the same {} samples per pixel the image mean {differs}. {slower} (`candor verify` tests more.)",
             twin.samples,
-            tiny(bias),
-            significant(twin.slowdown.value, 2),
         ),
     )
 }
@@ -220,7 +282,8 @@ pub(super) fn notes() -> [String; 5] {
         format!(
             "A warning comes where a slope is not {EXPECTED} or realised errors are not the stated \
              ones at a confidence of {}, and off by more than {MATTERS} or {}, which would change \
-             predicted times by about a tenth.",
+             predicted times by about a tenth. The noise must be spread over {MIN_VARYING} pixels or \
+             more for one.",
             rounded_percent(WARNING_CONFIDENCE, 3),
             rounded_percent(RATIO_MATTERS, 1),
         ),

@@ -22,7 +22,11 @@ pub(super) fn draw<DB: DrawingBackend>(
     let curves: Vec<Curve> = study.estimators.iter().filter_map(|c| Curve::of(c, study)).collect();
     let Some((x, y)) = axes(&curves) else {
         let place = (pen.offset(30), pen.offset(40));
-        let text = "unproven: too few samples met light for any error";
+        let text = if study.cheapest().is_some_and(EstimatorCost::is_noiseless) {
+            "no noise: all samples of a pixel are alike"
+        } else {
+            "unproven: too few samples met light for any error"
+        };
         return area.draw(&Text::new(text, place, pen.text(18)));
     };
     let mut chart = pen.chart(area, "What the next digit costs", [&x, &y])?;
