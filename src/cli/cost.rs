@@ -92,12 +92,11 @@ fn json(report: &CostReport, outputs: &[PathBuf]) -> String {
 }
 
 fn text(report: &CostReport, files: &[PathBuf]) -> String {
-    let mut text = String::new();
-    for file in files {
-        text += &format!("wrote {}\n", file.display());
-    }
+    let mut parts: Vec<String> =
+        files.iter().map(|file| format!("wrote {}", file.display())).collect();
     if !files.is_empty() {
-        text += "\n";
+        parts.push(String::new());
     }
-    text + &cost_table::tables(report)
+    parts.push(cost_table::tables(report));
+    parts.join("\n")
 }

@@ -162,12 +162,12 @@ impl Contestant {
             let efficiency = (value > 0.0).then(|| combined.interval(1.0 / value / seconds));
             (Noise { variance: error.interval(value), efficiency, error }, combined)
         });
-        let noisy = noise.filter(|(noise, _)| noise.variance.value > 0.0);
-        let predictions = noisy.map_or(Vec::new(), |(noise, error)| {
+        let present = noise.filter(|(noise, _)| noise.variance.value > 0.0);
+        let predictions = present.map_or(Vec::new(), |(noise, error)| {
             let frame = seconds * pixels;
             TARGETS.map(|target| predict(target, noise.variance.value, frame, error)).to_vec()
         });
-        let convergence = noisy.map_or(Vec::new(), |_| self.growth.points(&end));
+        let convergence = present.map_or(Vec::new(), |_| self.growth.points(&end));
         let varying_pixels = end.varying_pixels();
         let mut slope = fit(&convergence);
         let mut agreement =

@@ -92,7 +92,7 @@ fn draw<DB: DrawingBackend>(
     pen: Pen,
 ) -> Result<(), Failure<DB>> {
     root.fill(&PAPER)?;
-    if study.ladder.iter().any(|rung| rung.missing.is_some()) {
+    if study.ladder.iter().any(|rung| rung.missing.is_some_and(|missing| missing.low > 0.0)) {
         let (left, right) = root.split_horizontally(pen.length(SPLIT));
         convergence::draw(&left, study, pen)?;
         ladder::draw(&right, study, pen)?;
