@@ -1,9 +1,10 @@
 //! Progress of a study on stderr: a bar on a terminal, a line for each phase elsewhere,
 //! nothing if quiet.
 
+use super::progress::bar;
 use super::{on_terminal, streams, units};
 use crate::cost::{Phase, Plan, Progress};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 
 /// Shows which phase a study is in.
 pub(super) enum Phases {
@@ -66,12 +67,4 @@ impl Phases {
             bar.finish_and_clear();
         }
     }
-}
-
-fn bar() -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
-    let style = ProgressStyle::with_template("{bar:30} {percent:>3}%  {msg}")
-        .expect("the template is a constant");
-    bar.set_style(style);
-    bar
 }

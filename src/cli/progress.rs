@@ -145,7 +145,8 @@ impl Reporter {
     }
 }
 
-fn bar() -> ProgressBar {
+/// A bar of thousandths with a message beside it.
+pub(super) fn bar() -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{bar:30} {percent:>3}%  {msg}")
         .expect("the template is a constant");
