@@ -207,7 +207,8 @@ fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
         outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.factored_count);
         outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
         outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
-        outputs[4] = vec4<u32>(scene.sphere_count, scene.light_count, 0u, 0u);
+        outputs[4] = vec4<u32>(
+            scene.sphere_count, scene.light_count, bitcast<u32>(scene.approach), 0u);
         for (var i = 0u; i < LIGHT_VECTORS; i++) {
             outputs[5u + i] = scene.lights[i];
         }

@@ -31,8 +31,8 @@ struct Sphere {
 }
 
 struct Scene {
-    // Camera: origin, view direction, and the half extents of the picture on the
-    // plane at distance 1.
+    // Camera: where its axis starts, view direction, and the half extents of the picture
+    // on the plane at distance 1.
     origin: vec3<f32>,
     seed: u32,
     forward: vec3<f32>,
@@ -46,6 +46,8 @@ struct Scene {
     bound_bits: u32,
     sphere_count: u32,
     light_count: u32,
+    // How far along the view axis rays start, where the camera is far away.
+    approach: f32,
     // Places of the emitters in `spheres`, four to a vector: an array in a uniform
     // buffer has a stride of 16 bytes.
     lights: array<vec4<u32>, LIGHT_VECTORS>,

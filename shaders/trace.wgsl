@@ -22,7 +22,8 @@ fn surface_point(ray: Ray, hit: Hit) -> SurfacePoint {
 fn camera_ray(pixel: vec2<u32>, u: vec2<f32>) -> Ray {
     let x = 2.0 * (f32(pixel.x) + u.x) / f32(WIDTH) - 1.0;
     let y = 1.0 - 2.0 * (f32(pixel.y) + u.y) / f32(HEIGHT);
-    return Ray(scene.origin, normalize(scene.forward + x * scene.right + y * scene.up));
+    let offset = x * scene.right + y * scene.up;
+    return Ray(camera_point(offset), normalize(scene.forward + offset));
 }
 
 struct Sample {

@@ -23,6 +23,7 @@ pub mod pilot;
 pub mod render;
 pub mod report;
 pub mod scene;
+pub mod sweep;
 pub mod tracer;
 mod units;
 pub mod verify;

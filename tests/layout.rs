@@ -60,6 +60,7 @@ fn mirrors() -> [Layout; 4] {
             bound_bits,
             sphere_count,
             light_count,
+            approach,
             padding,
             lights,
             spheres
@@ -186,7 +187,7 @@ fn echo_of(scene: &layout::Scene) -> Vec<Row> {
         row(scene.forward, scene.factored_count),
         row(scene.right, scene.film_shift.cast_unsigned()),
         row(scene.up, scene.bound_bits),
-        [scene.sphere_count, scene.light_count, 0, 0],
+        [scene.sphere_count, scene.light_count, scene.approach.to_bits(), 0],
     ];
     rows.extend(scene.lights.as_chunks().0);
     for s in &scene.spheres {

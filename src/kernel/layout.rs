@@ -49,7 +49,7 @@ pub struct Sphere {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Scene {
-    /// Camera position, in kernel units.
+    /// Where the camera's axis starts, in kernel units: at the camera, or `approach` before it.
     pub origin: [f32; 3],
     /// Seed of the random numbers.
     pub seed: u32,
@@ -69,8 +69,10 @@ pub struct Scene {
     pub sphere_count: u32,
     /// Emitters among them.
     pub light_count: u32,
+    /// How far before the camera rays start, in kernel units; 0 unless the camera is far away.
+    pub approach: f32,
     /// Implicit in WGSL.
-    pub padding: [u32; 2],
+    pub padding: u32,
     /// Places of the emitters in `spheres`.
     pub lights: [u32; SPHERE_CAPACITY],
     /// Factored ones first, each group in the order of the scene file.

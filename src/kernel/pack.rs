@@ -2,7 +2,7 @@
 
 use super::layout::{self, SPHERE_CAPACITY};
 use crate::film::SampleScale;
-use crate::scene::{Scene, Sphere, Surface};
+use crate::scene::{Camera, Scene, Sphere, Surface};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
 
@@ -42,7 +42,7 @@ impl KernelUnits {
     }
 }
 
-/// A sphere that the camera is farther from than this many radii is small, whatever the
+/// A sphere that rays start farther from than this many radii is small, whatever the
 /// extent: the anchored discriminant is off by 3u(distance/R)², the factored miss distance
 /// by 3u(distance/R) of the radius, and they meet near six radii.
 const SMALL_FROM: f64 = 8.0;
@@ -94,7 +94,7 @@ pub fn pack(
     };
 
     let mut packed: Box<layout::Scene> = bytemuck::zeroed_box();
-    pack_camera(&mut packed, scene, &units);
+    pack_camera(&mut packed, scene, viewpoint, &units);
     for (place, index) in of_form(Form::Factored).chain(of_form(Form::Anchored)).enumerate() {
         let inside = viewpoint.inside()[index];
         packed.spheres[place] = pack_sphere(&spheres[index], index, forms[index], inside, &units);
@@ -108,8 +108,13 @@ pub fn pack(
     Ok(Packed { scene: packed, forms })
 }
 
+/// Where the camera's axis starts.
+fn ray_start(camera: &Camera, viewpoint: &Viewpoint) -> DVec3 {
+    camera.position() + viewpoint.approach() * camera.forward()
+}
+
 fn form_of(sphere: &Sphere, scene: &Scene, viewpoint: &Viewpoint) -> Form {
-    let distance = scene.camera().position().distance(sphere.center());
+    let distance = ray_start(scene.camera(), viewpoint).distance(sphere.center());
     let small = sphere.radius() <= viewpoint.extent() || distance > SMALL_FROM * sphere.radius();
     if small { Form::Factored } else { Form::Anchored }
 }
@@ -122,11 +127,17 @@ fn pack_lights(packed: &mut layout::Scene, spheres: usize) {
     packed.light_count = word(places.len());
 }
 
-fn pack_camera(packed: &mut layout::Scene, scene: &Scene, units: &KernelUnits) {
+fn pack_camera(
+    packed: &mut layout::Scene,
+    scene: &Scene,
+    viewpoint: &Viewpoint,
+    units: &KernelUnits,
+) {
     let (camera, size) = (scene.camera(), scene.size());
     let half_height = (camera.vertical_fov() / 2.0).tan();
     let half_width = half_height * f64::from(size.width()) / f64::from(size.height());
-    packed.origin = floats(units.point(camera.position()));
+    packed.origin = floats(units.point(ray_start(camera, viewpoint)));
+    packed.approach = float(units.length(viewpoint.approach()));
     packed.forward = floats(camera.forward());
     packed.right = floats(half_width * camera.right());
     packed.up = floats(half_height * camera.up());

@@ -6,6 +6,8 @@
 //! the side that the light came from, so a path never crosses one and sees each sphere
 //! from the side that the camera is on.
 
+mod approach;
+
 use crate::scene::{Camera, Scene, Sphere};
 use glam::DVec3;
 
@@ -25,6 +27,7 @@ pub struct Viewpoint {
     focus: DVec3,
     extent: f64,
     inside: Vec<bool>,
+    approach: f64,
 }
 
 impl Viewpoint {
@@ -33,12 +36,11 @@ impl Viewpoint {
     pub fn of(scene: &Scene) -> Self {
         let (low, high) = bounds(scene);
         let extent = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
-        let camera = scene.camera();
-        Self {
-            focus: low.midpoint(high),
-            extent,
-            inside: scene.spheres().iter().map(|s| sees_inside(camera, s)).collect(),
-        }
+        let (camera, focus) = (scene.camera(), low.midpoint(high));
+        let inside: Vec<bool> = scene.spheres().iter().map(|s| sees_inside(camera, s)).collect();
+        let is_far = camera.position().distance(focus) > FAR * extent;
+        let approach = if is_far { approach::approach(scene, &inside, extent) } else { 0.0 };
+        Self { focus, extent, inside, approach }
     }
 
     /// The point around which the kernel computes.
@@ -52,6 +54,13 @@ impl Viewpoint {
     #[must_use]
     pub fn extent(&self) -> f64 {
         self.extent
+    }
+
+    /// How far before the camera rays start, along its axis, in scene units: 0, unless the
+    /// camera is so far away that `f32` directions from there would be a coarse grid.
+    #[must_use]
+    pub fn approach(&self) -> f64 {
+        self.approach
     }
 
     /// For every sphere, whether paths see its inner side.
