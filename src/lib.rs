@@ -2,7 +2,7 @@
 //!
 //! Data flows one way, and no module knows what stands to its right:
 //!
-//! [`scene`] → [`viewpoint`], [`effects`], [`bound`] → [`film`] → [`kernel`] → [`gpu`] or
+//! [`scene`] → [`viewpoint`], [`effects`], [`bound`], [`range`] → [`film`] → [`kernel`] → [`gpu`] or
 //! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`] →
 //! [`report`] → [`cli`]
 //!
@@ -20,6 +20,7 @@ pub mod film;
 pub mod gpu;
 pub mod kernel;
 pub mod pilot;
+pub mod range;
 pub mod render;
 pub mod report;
 pub mod scene;

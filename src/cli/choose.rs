@@ -4,6 +4,7 @@ use super::args::DeviceChoice;
 use super::{Refusal, refuse};
 use crate::cpu::CpuTracer;
 use crate::gpu::{Adapter, Gpu, GpuTracer, adapters};
+use crate::range::Arithmetic;
 use crate::scene::Scene;
 use crate::tracer::{Description, TraceError, Tracer};
 use std::num::NonZeroUsize;
@@ -29,6 +30,14 @@ impl Chosen {
             Self::Adapter(adapter) => Box::new(GpuTracer::new(scene, Gpu::open(adapter)?)?),
             Self::Twin(threads) => Box::new(CpuTracer::new(scene, *threads)?),
         })
+    }
+
+    /// What it computes in.
+    pub fn arithmetic(&self) -> Arithmetic {
+        match self {
+            Self::Adapter(_) => Arithmetic::Single,
+            Self::Twin(_) => Arithmetic::Double,
+        }
     }
 
     /// Whether it computes on this machine's processor.

@@ -9,6 +9,7 @@ use super::{
 };
 use crate::cost::{CostError, Study, Tracers, Watch, bytes_per_pixel, resolvable, study};
 use crate::cpu::CpuTracer;
+use crate::range::Arithmetic;
 use crate::report::cost::{CostReport, check_folder};
 use crate::scene::Scene;
 use crate::tracer::{Description, TraceError, Tracer};
@@ -19,7 +20,7 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     let common = &args.common;
     // No estimator is named: each is checked on its own.
     let every = SamplingArgs { estimator: Some(EstimatorChoice::Auto), ..SamplingArgs::default() };
-    let scene = setup::load(common, &every)?;
+    let (scene, source) = setup::load(common, &every)?;
     if !scene.has_lights() {
         return refuse("the scene has no lights: it is black everywhere, at no cost");
     }
@@ -28,6 +29,7 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     let needed = u64::from(scene.size().pixels()) * bytes_per_pixel();
     memory::check(scene.size(), needed)?;
     let chosen = choose::choose(&common.device, common.threads)?;
+    setup::check_range(&scene, &source, &[chosen.arithmetic(), Arithmetic::Double])?;
     let mut phases = Phases::new(common.quiet);
     if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
         phases.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");

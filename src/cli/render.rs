@@ -12,14 +12,14 @@ use crate::estimate::{FIRST_LOOK, Summary, is_look, summarize};
 use crate::film::{Film, SampleRanges};
 use crate::render::{Audience, Outcome, Plan, Progress, Stop, render};
 use crate::report::{ErrorLog, FileError, Picture, Provenance};
-use crate::scene::{MAX_SPP, Scene};
+use crate::scene::{MAX_SPP, Scene, Source};
 use crate::tracer::{Description, Ledger};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
-    let scene = setup::load(&args.common, &args.sampling)?;
+    let (scene, source) = setup::load(&args.common, &args.sampling)?;
     let plan = plan(args, &scene);
     let outputs = Outputs::new(args)?;
     if let Some(log) = args.log.as_ref().filter(|log| outputs.contains(log)) {
@@ -29,7 +29,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
         outputs.check_films(plan.samples.end - plan.samples.start)?;
     }
     let finished =
-        if scene.has_lights() { trace(args, scene, plan)? } else { darkness(args, scene, &plan)? };
+        if scene.has_lights() { trace(args, scene, &source, plan)? } else { darkness(args, scene, &plan)? };
     let picture = Picture::develop(&finished.film, !finished.scene.has_lights());
     let provenance = finished.provenance(args);
     interrupt::writing_begins();
@@ -101,10 +101,16 @@ impl Log {
     }
 }
 
-fn trace(args: &RenderArgs, mut scene: Scene, mut plan: Plan) -> Result<Finished, Refusal> {
+fn trace(
+    args: &RenderArgs,
+    mut scene: Scene,
+    source: &Source,
+    mut plan: Plan,
+) -> Result<Finished, Refusal> {
     let common = &args.common;
     let interrupt = interrupt::watch()?;
     let chosen = choose::choose(&common.device, common.threads)?;
+    setup::check_range(&scene, source, &[chosen.arithmetic()])?;
     let needed = memory::needed(scene.size(), chosen.on_processor());
     memory::check(scene.size(), needed)?;
     let mut log = Log::create(args)?;

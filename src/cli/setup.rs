@@ -3,12 +3,17 @@
 use super::args::{CommonArgs, EstimatorChoice, SamplingArgs};
 use super::{Refusal, in_colour, refuse};
 use crate::bound;
-use crate::scene::{self, Scene};
+use crate::range::{self, Arithmetic};
+use crate::scene::{self, Scene, SceneFileError, Source};
+use crate::viewpoint::Viewpoint;
 
 /// Loads the scene and applies what the command line says otherwise; where it leaves the
 /// choice of an estimator to a pilot, the scene's stays for now.
-pub(super) fn load(args: &CommonArgs, sampling: &SamplingArgs) -> Result<Scene, Refusal> {
-    let mut scene = scene::load(&args.scene).map_err(|error| Refusal(error.render(in_colour())))?;
+pub(super) fn load(
+    args: &CommonArgs,
+    sampling: &SamplingArgs,
+) -> Result<(Scene, Source), Refusal> {
+    let (mut scene, source) = scene::load_with_source(&args.scene).map_err(in_words)?;
     if let Some(size) = args.size {
         scene = scene.with_size(size);
     }
@@ -30,5 +35,24 @@ pub(super) fn load(args: &CommonArgs, sampling: &SamplingArgs) -> Result<Scene, 
     if sampling.estimator != Some(EstimatorChoice::Auto) {
         bound::check(&scene)?;
     }
-    Ok(scene)
+    Ok((scene, source))
+}
+
+/// Refuses a scene that is outside of the range of what is to trace it.
+pub(super) fn check_range(
+    scene: &Scene,
+    source: &Source,
+    arithmetics: &[Arithmetic],
+) -> Result<(), Refusal> {
+    let viewpoint = Viewpoint::of(scene);
+    for &arithmetic in arithmetics {
+        range::check(scene, &viewpoint, arithmetic)
+            .map_err(|out| in_words(source.complain(out.sphere, &out.what, &out.allowed)))?;
+    }
+    Ok(())
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "for map_err")]
+fn in_words(error: SceneFileError) -> Refusal {
+    Refusal(error.render(in_colour()))
 }

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::cpu::CpuTracer;
 use crate::film::Film;
+use crate::range::Arithmetic;
 use crate::render::{Audience, Plan, Stop, render};
 use crate::scene::Scene;
 use crate::tracer::{Description, Tracer};
@@ -19,7 +20,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     if args.sampling.estimator == Some(EstimatorChoice::Auto) {
         return refuse("verify checks one estimator; --estimator auto is for render");
     }
-    let scene = setup::load(common, &args.sampling)?;
+    let (scene, source) = setup::load(common, &args.sampling)?;
     let spp = scene.settings().spp();
     if spp < 2 {
         return refuse("verify needs at least 2 samples per pixel");
@@ -39,6 +40,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
             choose::INSTALL_DRIVER
         ));
     };
+    setup::check_range(&scene, &source, &[Arithmetic::Single, Arithmetic::Double])?;
     memory::check(scene.size(), 3 * memory::needed(scene.size(), true))?;
     let other_seed = scene.settings().with_seed(scene.settings().seed().wrapping_add(1));
     let other_scene = scene.clone().with_settings(other_seed);

@@ -15,7 +15,7 @@ mod sphere;
 
 pub use camera::{Camera, ImageSize};
 pub use error::{Diagnostic, SceneFileError};
-pub use file::{load, parse};
+pub use file::{Source, load, load_with_source, parse};
 pub use hash::SceneHash;
 pub use settings::{Estimator, RenderSettings};
 pub use sphere::{Albedo, Exponent, Radiance, Sphere, Surface};
@@ -98,6 +98,9 @@ impl Scene {
         settings: RenderSettings,
         mut spheres: Vec<Sphere>,
     ) -> Self {
+        for (ordinal, sphere) in (1..).zip(&mut spheres) {
+            sphere.set_ordinal(ordinal);
+        }
         let mut places = HashSet::new();
         spheres.retain(|sphere| {
             let place = (sphere.center() + DVec3::ZERO).extend(sphere.radius());

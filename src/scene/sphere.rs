@@ -1,6 +1,7 @@
 //! Spheres and what their surfaces do with light.
 
 use super::{Invalid, MAX_EXPONENT, MAX_RADIANCE, MIN_RADIANCE, check_point, check_radius, refuse};
+use super::error::quoted;
 use glam::DVec3;
 
 /// Reflectance ρ per channel, each in [0, 1].
@@ -88,6 +89,7 @@ pub enum Surface {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sphere {
     name: Option<String>,
+    ordinal: usize,
     center: DVec3,
     radius: f64,
     surface: Surface,
@@ -100,7 +102,7 @@ impl Sphere {
     pub fn new(center: DVec3, radius: f64, surface: Surface) -> Result<Self, Invalid> {
         check_point(center)?;
         check_radius(radius)?;
-        Ok(Self { name: None, center, radius, surface })
+        Ok(Self { name: None, ordinal: 0, center, radius, surface })
     }
 
     /// Names the sphere for messages.
@@ -114,6 +116,26 @@ impl Sphere {
     #[must_use]
     pub fn name(&self) -> Option<&str> {
         self.name.as_deref()
+    }
+
+    /// Its number in the scene, counted from 1 in the order of the file; 0 before it is part
+    /// of one.
+    #[must_use]
+    pub fn ordinal(&self) -> usize {
+        self.ordinal
+    }
+
+    pub(super) fn set_ordinal(&mut self, ordinal: usize) {
+        self.ordinal = ordinal;
+    }
+
+    /// What messages call it: `sphere 3`, with its name if it has one.
+    #[must_use]
+    pub fn title(&self) -> String {
+        match &self.name {
+            Some(name) => format!("sphere {} ({})", self.ordinal, quoted(name)),
+            None => format!("sphere {}", self.ordinal),
+        }
     }
 
     /// Centre.

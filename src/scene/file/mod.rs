@@ -1,6 +1,7 @@
 //! Reads scene files: TOML text to a validated [`Scene`], with every mistake found.
 
 mod sections;
+mod source;
 mod spheres;
 mod stray;
 mod syntax;
@@ -13,6 +14,8 @@ use std::path::Path;
 use std::thread;
 
 use toml::de::DeTable;
+
+pub use source::Source;
 
 use super::error::{Diagnostic, SceneFileError};
 use super::{Invalid, Scene};
@@ -31,12 +34,20 @@ const STACK_BYTES: usize = 32 << 20;
 /// If the file cannot be read, is larger than 64 MiB, is not UTF-8 text, or is not a
 /// valid scene; then with every mistake that it has.
 pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
+    load_with_source(path).map(|(scene, _)| scene)
+}
+
+/// Reads the scene file at `path`, and keeps its text.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_source(path: &Path) -> Result<(Scene, Source), SceneFileError> {
     let bytes = read(path)
         .map_err(|error| SceneFileError::Read { path: path.to_owned(), error })?
         .ok_or_else(|| SceneFileError::TooLarge { path: path.to_owned(), limit: MAX_FILE_BYTES })?;
     let name = path.display().to_string();
     match String::from_utf8(bytes) {
-        Ok(text) => parse(&name, &text),
+        Ok(text) => parse_with_source(&name, &text),
         Err(error) => {
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
             let diagnostics = vec![syntax::not_utf8(&error.utf8_error(), error.as_bytes())];
@@ -51,8 +62,12 @@ pub fn load(path: &Path) -> Result<Scene, SceneFileError> {
 /// If the text is not a valid scene. A mistake in the TOML syntax is the only one
 /// reported; otherwise every mistake is.
 pub fn parse(name: &str, text: &str) -> Result<Scene, SceneFileError> {
+    parse_with_source(name, text).map(|(scene, _)| scene)
+}
+
+fn parse_with_source(name: &str, text: &str) -> Result<(Scene, Source), SceneFileError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    with_deep_stack(|| read_text(text)).map_err(|mut diagnostics| {
+    with_deep_stack(|| read_text(name, text)).map_err(|mut diagnostics| {
         diagnostics.sort_by_key(|diagnostic| diagnostic.span().start);
         SceneFileError::Invalid { name: name.to_owned(), text: text.to_owned(), diagnostics }
     })
@@ -70,11 +85,11 @@ fn with_deep_stack<T: Send>(read: impl FnOnce() -> T + Send) -> T {
     })
 }
 
-fn read_text(text: &str) -> Result<Scene, Vec<Diagnostic>> {
+fn read_text(name: &str, text: &str) -> Result<(Scene, Source), Vec<Diagnostic>> {
     let root = DeTable::parse(text).map_err(|error| vec![syntax::explain(text, &error)])?;
     let mut log = Log::default();
     match sections::scene(root.get_ref(), &mut log) {
-        Some(scene) if log.0.is_empty() => Ok(scene),
+        Some(scene) if log.0.is_empty() => Ok((scene, Source::new(name, text, root.get_ref()))),
         _ => Err(log.0),
     }
 }
