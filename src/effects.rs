@@ -5,6 +5,7 @@ use crate::viewpoint::Viewpoint;
 
 /// The effects that a scene calls for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each effect is there or it is not")]
 pub struct Effects {
     /// Some surface is diffuse.
     pub diffuse: bool,

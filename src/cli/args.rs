@@ -56,8 +56,6 @@ impl Command {
 /// What every command on a scene takes.
 #[derive(Debug, Args)]
 pub(super) struct CommonArgs {
-    /// Scene file (TOML).
-    pub scene: PathBuf,
     /// Seed of the random numbers; default: the scene's, or 0.
     #[arg(long, value_name = "S")]
     pub seed: Option<u32>,
@@ -96,6 +94,8 @@ pub(super) struct SamplingArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
     #[command(flatten)]
     pub common: CommonArgs,
     #[command(flatten)]
@@ -128,6 +128,13 @@ pub(super) struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
+    /// Scene file (TOML).
+    #[arg(required_unless_present = "hard")]
+    pub scene: Option<PathBuf>,
+    /// Check the hard cases in place of a scene: the classic scene with huge walls, far away,
+    /// scaled, with a tiny lamp and near mirrors; a table of the bias of each.
+    #[arg(long, conflicts_with_all = ["scene", "spp", "size", "bounces", "seed"])]
+    pub hard: bool,
     #[command(flatten)]
     pub common: CommonArgs,
     #[command(flatten)]
@@ -136,6 +143,8 @@ pub(super) struct VerifyArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct CostArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
     #[command(flatten)]
     pub common: CommonArgs,
     /// Time for all measurements, such as 60s or 5m; at least 5s. More time means narrower

@@ -20,7 +20,7 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     let common = &args.common;
     // No estimator is named: each is checked on its own.
     let every = SamplingArgs { estimator: Some(EstimatorChoice::Auto), ..SamplingArgs::default() };
-    let (scene, source) = setup::load(common, &every)?;
+    let (scene, source) = setup::load(&args.scene, common, &every)?;
     if !scene.has_lights() {
         return refuse("the scene has no lights: it is black everywhere, at no cost");
     }
@@ -44,7 +44,7 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
         measured => measured?,
     };
     interrupt::writing_begins();
-    let name = common.scene.file_name().unwrap_or_default().to_string_lossy();
+    let name = args.scene.file_name().unwrap_or_default().to_string_lossy();
     let report = CostReport { scene: &name, tracer: &description, study: &measured };
     let written = report.write(&args.output);
     // In the current folder, files are called by their bare names.

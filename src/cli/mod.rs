@@ -8,6 +8,7 @@ mod cost_table;
 mod devices;
 mod diff;
 mod environment;
+mod hard;
 mod interrupt;
 mod memory;
 mod output;

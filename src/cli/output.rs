@@ -26,7 +26,7 @@ impl Outputs {
     pub fn new(args: &RenderArgs) -> Result<Self, Refusal> {
         let mut paths = args.output.clone();
         if paths.is_empty() {
-            let stem = args.common.scene.file_stem().unwrap_or_default();
+            let stem = args.scene.file_stem().unwrap_or_default();
             paths = ["exr", "png"].map(|ending| named(stem, ending)).to_vec();
         }
         let mut files = Vec::new();

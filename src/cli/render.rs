@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
-    let (scene, source) = setup::load(&args.common, &args.sampling)?;
+    let (scene, source) = setup::load(&args.scene, &args.common, &args.sampling)?;
     let plan = plan(args, &scene);
     let outputs = Outputs::new(args)?;
     if let Some(log) = args.log.as_ref().filter(|log| outputs.contains(log)) {
@@ -28,8 +28,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     if plan.time.is_none() && plan.target_error.is_none() {
         outputs.check_films(plan.samples.end - plan.samples.start)?;
     }
-    let finished =
-        if scene.has_lights() { trace(args, scene, &source, plan)? } else { darkness(args, scene, &plan)? };
+    let finished = if scene.has_lights() {
+        trace(args, scene, &source, plan)?
+    } else {
+        darkness(args, scene, &plan)?
+    };
     let picture = Picture::develop(&finished.film, !finished.scene.has_lights());
     let provenance = finished.provenance(args);
     interrupt::writing_begins();
@@ -218,7 +221,7 @@ impl Finished {
     }
 
     fn provenance(&self, args: &RenderArgs) -> Provenance {
-        let name = args.common.scene.file_name().unwrap_or_default();
+        let name = args.scene.file_name().unwrap_or_default();
         Provenance {
             scene_file: name.to_string_lossy().into_owned(),
             scene_hash: self.scene.hash(),

@@ -6,14 +6,16 @@ use crate::bound;
 use crate::range::{self, Arithmetic};
 use crate::scene::{self, Scene, SceneFileError, Source};
 use crate::viewpoint::Viewpoint;
+use std::path::Path;
 
 /// Loads the scene and applies what the command line says otherwise; where it leaves the
 /// choice of an estimator to a pilot, the scene's stays for now.
 pub(super) fn load(
+    file: &Path,
     args: &CommonArgs,
     sampling: &SamplingArgs,
 ) -> Result<(Scene, Source), Refusal> {
-    let (mut scene, source) = scene::load_with_source(&args.scene).map_err(in_words)?;
+    let (mut scene, source) = scene::load_with_source(file).map_err(in_words)?;
     if let Some(size) = args.size {
         scene = scene.with_size(size);
     }

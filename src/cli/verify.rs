@@ -1,9 +1,10 @@
 //! `candor verify`: this machine's device against the f64 twin.
 
-use super::args::{DeviceChoice, EstimatorChoice, VerifyArgs};
+use super::args::{CommonArgs, DeviceChoice, EstimatorChoice, VerifyArgs};
+use super::choose::Chosen;
 use super::progress::Reporter;
 use super::{
-    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, refuse, setup, streams,
+    DONE, FAILED, INTERRUPTED, Refusal, choose, hard, interrupt, memory, refuse, setup, streams,
 };
 use crate::cpu::CpuTracer;
 use crate::film::Film;
@@ -20,7 +21,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     if args.sampling.estimator == Some(EstimatorChoice::Auto) {
         return refuse("verify checks one estimator; --estimator auto is for render");
     }
-    let (scene, source) = setup::load(common, &args.sampling)?;
+    let Some(file) = args.scene.as_ref().filter(|_| !args.hard) else {
+        return hard::run(args);
+    };
+    let (scene, source) = setup::load(file, common, &args.sampling)?;
     let spp = scene.settings().spp();
     if spp < 2 {
         return refuse("verify needs at least 2 samples per pixel");
@@ -28,18 +32,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     if !scene.has_lights() {
         return refuse("the scene has no lights: it is black everywhere, with nothing to compare");
     }
-    if common.device == DeviceChoice::Cpu {
-        return refuse(
-            "verify compares a device with the CPU twin; --device cpu is the twin itself",
-        );
-    }
-    let chosen = choose::choose(&common.device, common.threads)?;
-    let Some(device) = chosen.adapter() else {
-        return refuse(format_args!(
-            "verify compares a device with the CPU twin, and there is no device here; {}",
-            choose::INSTALL_DRIVER
-        ));
-    };
+    let (chosen, device) = device(common)?;
     setup::check_range(&scene, &source, &[Arithmetic::Single, Arithmetic::Double])?;
     memory::check(scene.size(), 3 * memory::needed(scene.size(), true))?;
     let other_seed = scene.settings().with_seed(scene.settings().seed().wrapping_add(1));
@@ -54,6 +47,23 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     let verdict = judge(&ours, &twin, &other);
     streams::results(&report(&verdict, &device, spp, common.json))?;
     Ok(if verdict.agrees() { DONE } else { FAILED })
+}
+
+/// The device that is checked.
+pub(super) fn device(args: &CommonArgs) -> Result<(Chosen, Description), Refusal> {
+    if args.device == DeviceChoice::Cpu {
+        return refuse(
+            "verify compares a device with the CPU twin; --device cpu is the twin itself",
+        );
+    }
+    let chosen = choose::choose(&args.device, args.threads)?;
+    match chosen.adapter() {
+        Some(device) => Ok((chosen, device)),
+        None => refuse(format_args!(
+            "verify compares a device with the CPU twin, and there is no device here; {}",
+            choose::INSTALL_DRIVER
+        )),
+    }
 }
 
 struct Run<'a> {

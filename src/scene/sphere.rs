@@ -1,7 +1,7 @@
 //! Spheres and what their surfaces do with light.
 
-use super::{Invalid, MAX_EXPONENT, MAX_RADIANCE, MIN_RADIANCE, check_point, check_radius, refuse};
 use super::error::quoted;
+use super::{Invalid, MAX_EXPONENT, MAX_RADIANCE, MIN_RADIANCE, check_point, check_radius, refuse};
 use glam::DVec3;
 
 /// Reflectance ρ per channel, each in [0, 1].

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub const RESOLVED: f64 = 2.5e-4;
 
 /// Samples per pixel of the first look and the most that are spent on a row.
-const FIRST: u64 = 64;
+const FIRST: u64 = 256;
 const MOST: u64 = 1 << 16;
 
 /// Pixels along a side of the pictures.
@@ -33,6 +33,19 @@ pub struct Row {
 }
 
 impl Row {
+    /// Samples on each side.
+    #[must_use]
+    pub fn paths(&self) -> u64 {
+        self.samples * u64::from(SIDE * SIDE)
+    }
+
+    /// Bias and standard error of the channel that is off most.
+    #[must_use]
+    pub fn worst(&self) -> (f64, f64) {
+        let channels = std::iter::zip(self.paired.bias, self.paired.error);
+        channels.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs())).unwrap_or_default()
+    }
+
     /// Whether the bias is known as well as the sweep asks for.
     #[must_use]
     pub fn is_resolved(&self) -> bool {
