@@ -72,7 +72,7 @@ fn at(total: u64, wgsl: String) -> (Vec<PixelWords>, Vec<PixelWords>) {
     (found, words(total).collect())
 }
 
-/// Every power of two at which a word of some sum fills up, to the last sample of all.
+/// Across powers of two, and to the last sample of all.
 #[test]
 fn sums_are_exact_up_to_the_last_sample() {
     for exponent in [16, 20, 24, 28, 31, 32] {

@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 pub const RADII: [f64; 4] = [1.0, 1e3, 1e5, 1e7];
 
 /// Rays that graze less than this are judged: where they graze more, missing is no error.
-const LEAST_COSINE: f64 = 0.1;
+pub const LEAST_COSINE: f64 = 0.1;
 
 /// A way to a hit.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -25,15 +25,8 @@ enum Form {
     Double,
 }
 
-const FORMS: [(&str, Form); 4] = [
-    ("textbook", Form::Textbook),
-    ("factored", Form::Factored),
-    ("anchored", Form::Anchored),
-    ("f64 on the CPU", Form::Double),
-];
-
-/// Worst distances from the surface, one for each radius.
-pub type Table = Vec<(&'static str, Vec<f64>)>;
+/// Worst distances from the surface: a row for each form, a column for each radius.
+pub type Table = [[f64; RADII.len()]; 4];
 
 /// The text whose factored form is the textbook's, b² - c, and its root, -b - √.
 pub fn textbook(wgsl: &str) -> String {
@@ -66,7 +59,8 @@ pub fn measure(adapter: &Adapter) -> Table {
         };
         worst(&plans, &found)
     };
-    FORMS.map(|(name, form)| (name, RADII.map(|radius| of(form, radius)).into())).into()
+    [Form::Textbook, Form::Factored, Form::Anchored, Form::Double]
+        .map(|form| RADII.map(|radius| of(form, radius)))
 }
 
 /// A hit that is missed is infinitely far off.
@@ -108,24 +102,4 @@ fn off_surface(plan: &Plan, t: f64) -> f64 {
     let p: DVec3 = origin + t * direction - plan.point;
     let value = plan.normal.dot(p) + p.length_squared() / (2.0 * plan.radius);
     (2.0 * value / (1.0 + (1.0 + 2.0 * value / plan.radius).max(0.0).sqrt())).abs()
-}
-
-pub fn print(table: &Table) {
-    println!(
-        "Worst distance of a hit from the sphere that was meant: points up to 8 from the focus"
-    );
-    println!("along each axis, rays of up to 16, cosines from {LEAST_COSINE}");
-    print!("{:20}", "");
-    for radius in RADII {
-        print!("{:>12}", format!("R = {radius:e}"));
-    }
-    println!();
-    for (name, row) in table {
-        print!("{name:20}");
-        for off in row {
-            print!("{off:>12.1e}");
-        }
-        println!();
-    }
-    println!();
 }

@@ -30,10 +30,9 @@ fn main() -> ExitCode {
     let functions = functions::measure(&adapter);
     functions::print(&functions);
     calls::measure_functions(&adapter, rounds, &functions);
-    renders::measure_functions(&adapter, rounds);
-    hits::print(&hits::measure(&adapter));
+    renders::measure_functions(&adapter, rounds, &functions);
+    renders::measure_forms(&adapter, rounds, &hits::measure(&adapter));
     calls::measure_forms(&adapter, rounds);
-    renders::measure_forms(&adapter, rounds);
     let exceeded = functions.iter().any(functions::Measured::exceeds);
     if exceeded { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }

@@ -1,6 +1,7 @@
 //! Nanoseconds of one sample of a whole render, with kernels that differ in one thing.
 
-use crate::hits::textbook;
+use crate::functions::{Measured, Worst, short};
+use crate::hits::{LEAST_COSINE, RADII, Table, textbook};
 use crate::options::{open, root};
 use crate::turns::{self, Measure, Middle};
 use crate::wgsl::with_body;
@@ -44,19 +45,11 @@ impl Rung {
     }
 }
 
-/// Measures the rungs in turns and prints what each takes above the first.
-fn print(title: &str, rounds: u64, rungs: &mut [Rung]) {
+/// Measures the rungs in turns: their times, round by round.
+fn times(rounds: u64, rungs: &mut [Rung]) -> Vec<Vec<f64>> {
     let mut rows: Vec<Measure> =
         rungs.iter_mut().map(|rung| Box::new(|round| rung.nanoseconds(round)) as Measure).collect();
-    let times = turns::take(rounds, &mut rows);
-    drop(rows);
-    println!("Nanoseconds per sample, {title}; above the first");
-    for (rung, row) in std::iter::zip(rungs.iter(), &times) {
-        let extra = turns::extra(row, &times[0]);
-        let verdict = if rung.name == rungs[0].name { "" } else { extra.verdict() };
-        println!("{:32} {:>23} {extra:>24} {verdict}", rung.name, Middle::of(row));
-    }
-    println!();
+    turns::take(rounds, &mut rows)
 }
 
 /// The classic scene with walls of another radius, where the walls stay.
@@ -76,42 +69,83 @@ fn packed(scene: &Scene) -> (Packed, String) {
     (packed, wgsl)
 }
 
-const SINCOS: (&str, &str) =
-    ("sincos_2pi", "return vec2<f32>(sin(6.283185307179586 * u), cos(6.283185307179586 * u));");
-const LOG: (&str, &str) = ("minus_log_complement", "return -log(1.0 - u);");
-const FRACTION: (&str, &str) = ("one_minus_exp_minus", "return 1.0 - exp(-x);");
-const EXP: (&str, &str) = ("exp_minus", "return exp(-x);");
-/// The lobe as course texts write it.
-const POWER: (&str, &str) = (
-    "polar_phong",
-    "let cosine = pow(1.0 - u, 1.0 / (exponent + 1.0));
-    return vec2<f32>(sqrt(max(1.0 - cosine * cosine, 0.0)), cosine);",
-);
+/// A function and another body for it.
+type Body = (&'static str, &'static str);
 
-/// The kernel with WGSL's functions in place of its own.
-fn measure_estimator(adapter: &Adapter, rounds: u64, estimator: Estimator) {
+const SINCOS: &[Body] =
+    &[("sincos_2pi", "return vec2<f32>(sin(6.283185307179586 * u), cos(6.283185307179586 * u));")];
+
+/// The lobe as course texts write it, and its density by WGSL's log and exp.
+const LOBE: &[Body] = &[
+    (
+        "polar_phong",
+        "let cosine = pow(1.0 - u, 1.0 / (exponent + 1.0));
+    return vec2<f32>(sqrt(max(1.0 - cosine * cosine, 0.0)), cosine);",
+    ),
+    ("minus_log_complement", "return -log(1.0 - u);"),
+    ("exp_minus", "return exp(-x);"),
+];
+
+/// The kernel with WGSL's functions in place of its own, and what they are off by.
+fn measure_estimator(adapter: &Adapter, rounds: u64, estimator: Estimator, errors: &[Measured]) {
     let scene = classic(1e5);
     let scene = scene.clone().with_settings(scene.settings().with_estimator(estimator));
     let (packed, kernel) = packed(&scene);
-    let rung = |name, bodies: &[(&str, &str)]| {
-        let wgsl = bodies.iter().fold(kernel.clone(), |wgsl, (f, body)| with_body(&wgsl, f, body));
+    let rung = |name, bodies: &[&[Body]]| {
+        let wgsl = bodies
+            .iter()
+            .copied()
+            .flatten()
+            .fold(kernel.clone(), |wgsl, (function, body)| with_body(&wgsl, function, body));
         let tracer = GpuTracer::with_kernel(&scene, open(adapter), &packed.scene, &wgsl);
         Rung::new(name, tracer.expect("the device takes the kernel"), &scene, SPP)
     };
     let mut rungs = [
-        rung("all built-in, lobe by pow", &[SINCOS, LOG, FRACTION, EXP, POWER]),
-        rung("all built-in", &[SINCOS, LOG, FRACTION, EXP]),
-        rung("own sin, cos", &[LOG, FRACTION, EXP]),
-        rung("own log, 1-exp, exp", &[SINCOS]),
+        rung("WGSL's", &[SINCOS, LOBE]),
+        rung("own sin, cos", &[LOBE]),
+        rung("own lobe", &[SINCOS]),
         rung("all own (the kernel)", &[]),
     ];
-    let title = format!("two-spheres.toml, {}", estimator.name());
-    print(&title, rounds, &mut rungs);
+    let times = times(rounds, &mut rungs);
+    let circle = error_of(errors, "sin 2πu", |worst| worst.absolute);
+    let lobe = error_of(errors, "1-cosα, n = 1e2", |worst| worst.relative);
+    println!("Nanoseconds per sample, two-spheres.toml, {}, and errors in 2^-24", estimator.name());
+    println!(
+        "{:24} {:>12} {:>12} {:>23} {:>25}",
+        "", "sin 2πu, abs", "lobe, rel", "", "above the first"
+    );
+    let own = [[false, false], [true, false], [false, true], [true, true]];
+    for ((rung, row), own) in rungs.iter().zip(&times).zip(own) {
+        let [circle, lobe] = [&circle[usize::from(own[0])], &lobe[usize::from(own[1])]];
+        println!(
+            "{:24} {circle:>12} {lobe:>12} {:>23} {}",
+            rung.name,
+            Middle::of(row),
+            above(row, &times[0])
+        );
+    }
+    println!();
 }
 
-pub fn measure_functions(adapter: &Adapter, rounds: u64) {
-    measure_estimator(adapter, rounds, Estimator::Implicit);
-    measure_estimator(adapter, rounds, Estimator::Mis);
+/// What a rung takes above the first.
+fn above(row: &[f64], first: &[f64]) -> String {
+    if std::ptr::eq(row, first) {
+        return String::new();
+    }
+    let extra = turns::extra(row, first);
+    format!("{extra:>25} {}", extra.verdict())
+}
+
+/// The error of WGSL's way and of the kernel's.
+fn error_of(errors: &[Measured], name: &str, of: impl Fn(&Worst) -> f64) -> [String; 2] {
+    let found = errors.iter().find(|m| m.function.name == name).expect("it was measured");
+    let own = found.own.expect("the kernel has its own");
+    [short(of(&found.built_in)), short(of(&own))]
+}
+
+pub fn measure_functions(adapter: &Adapter, rounds: u64, errors: &[Measured]) {
+    measure_estimator(adapter, rounds, Estimator::Implicit, errors);
+    measure_estimator(adapter, rounds, Estimator::Mis, errors);
 }
 
 /// The packed scene with every sphere by centre and radius, in the order of the file.
@@ -139,8 +173,9 @@ fn floats(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }
 
-/// The ladder of hits: walls of radius 100, with which every form is right.
-pub fn measure_forms(adapter: &Adapter, rounds: u64) {
+/// The ladder of hits, walls of radius 100, with which every form is right: ns per sample
+/// of each form, and per ray and sphere; beside them, how far off their hits are.
+pub fn measure_forms(adapter: &Adapter, rounds: u64, errors: &Table) {
     let scene = classic(1e2);
     let (packed, kernel) = packed(&scene);
     let centred = by_centre(&scene, &packed);
@@ -153,9 +188,18 @@ pub fn measure_forms(adapter: &Adapter, rounds: u64) {
     let mut rungs = [
         rung("textbook", &centred, &textbook(&factored)),
         rung("factored", &centred, &factored),
-        rung("walls anchored (the kernel)", &packed, &kernel),
-        Rung::new("f64 on the CPU (the twin)", twin, &scene, TWIN_SPP),
+        rung("anchored (walls; kernel)", &packed, &kernel),
+        Rung::new("f64 on the CPU (twin)", twin, &scene, TWIN_SPP),
     ];
-    let title = "two-spheres.toml with walls of radius 100, implicit";
-    print(title, rounds, &mut rungs);
+    let times = times(rounds, &mut rungs);
+    println!(
+        "Worst distance of a hit from the sphere that was meant (points up to 8 from the focus          along each axis,\nrays of up to 16, cosines from {LEAST_COSINE}), and nanoseconds per          sample, two-spheres.toml with walls of radius 100, implicit"
+    );
+    let radii = RADII.map(|radius| format!("{:>10}", format!("R = {radius:.0e}"))).concat();
+    println!("{:24} {radii} {:>24} {:>25}", "", "", "above the first");
+    for ((rung, row), off) in rungs.iter().zip(&times).zip(errors) {
+        let off = off.map(|off| format!("{off:>10.1e}")).concat();
+        println!("{:24} {off} {:>24} {}", rung.name, Middle::of(row), above(row, &times[0]));
+    }
+    println!();
 }

@@ -1,9 +1,7 @@
 //! The hard cases of the sweep: the classic scene with one thing driven to the edge of
 //! the range that candor declares safe.
 
-use crate::scene::{
-    Camera, Exponent, Invalid, Scene, SceneFileError, Sphere, Surface, parse,
-};
+use crate::scene::{Camera, Exponent, Invalid, Scene, SceneFileError, Sphere, Surface, parse};
 use glam::{DQuat, DVec3, EulerRot};
 
 /// The classic scene, as it stands in the repository.
@@ -78,7 +76,9 @@ fn with_walls(classic: &Scene, radius: f64) -> Scene {
 
 fn walls(classic: &Scene) -> Vec<Case> {
     let mut rows: Vec<Case> = (2..=9)
-        .map(|power| Case::new("wall radius", format!("1e{power}"), with_walls(classic, exp10(power))))
+        .map(|power| {
+            Case::new("wall radius", format!("1e{power}"), with_walls(classic, exp10(power)))
+        })
         .collect();
     let mut planes = Case::new("wall radius", "planes", with_walls(classic, PLANE));
     planes.reference = with_walls(classic, NEARLY_PLANE);
@@ -89,9 +89,8 @@ fn walls(classic: &Scene) -> Vec<Case> {
 /// The whole scene, camera included, turned, scaled and moved.
 fn mapped(scene: &Scene, turn: DQuat, scale: f64, shift: DVec3) -> Scene {
     let place = |p: DVec3| turn * (scale * p) + shift;
-    let spheres = with_spheres(scene, |s| {
-        Sphere::new(place(s.center()), scale * s.radius(), s.surface())
-    });
+    let spheres =
+        with_spheres(scene, |s| Sphere::new(place(s.center()), scale * s.radius(), s.surface()));
     let camera = scene.camera();
     let ahead = camera.position() + 9.0 * camera.forward();
     let fov = camera.vertical_fov().to_degrees();
@@ -106,12 +105,20 @@ fn seen_by(scene: &Scene, camera: Result<Camera, Invalid>) -> Scene {
 
 fn transformed(classic: &Scene) -> Vec<Case> {
     let scaled = [-6, -4, -2, 2, 4, 6].map(|power| {
-        Case::new("scaled by", format!("1e{power}"), mapped(classic, DQuat::IDENTITY, exp10(power), DVec3::ZERO))
+        Case::new(
+            "scaled by",
+            format!("1e{power}"),
+            mapped(classic, DQuat::IDENTITY, exp10(power), DVec3::ZERO),
+        )
     });
     let axes = [("x", DVec3::X), ("y", DVec3::Y), ("z", DVec3::Z)];
     let moved = axes.into_iter().flat_map(|(name, axis)| {
         [1e3, 1e6, -1e6].map(|way| {
-            Case::new("moved by", format!("{way:e} {name}"), mapped(classic, DQuat::IDENTITY, 1.0, way * axis))
+            Case::new(
+                "moved by",
+                format!("{way:e} {name}"),
+                mapped(classic, DQuat::IDENTITY, 1.0, way * axis),
+            )
         })
     });
     scaled.into_iter().chain(moved).collect()
@@ -130,7 +137,11 @@ fn far_cameras(classic: &Scene) -> Vec<Case> {
             let fov = 2.0 * (half / (exp10(power) - 3.0)).atan().to_degrees();
             let moved = Camera::new(far, DVec3::ZERO, camera.up(), fov);
             let turn = DQuat::from_euler(EulerRot::XYZ, 0.7, 0.5, 0.3);
-            Case::new("camera away", format!("1e{power}"), mapped(&seen_by(classic, moved), turn, 1.0, DVec3::ZERO))
+            Case::new(
+                "camera away",
+                format!("1e{power}"),
+                mapped(&seen_by(classic, moved), turn, 1.0, DVec3::ZERO),
+            )
         })
         .collect()
 }

@@ -39,7 +39,8 @@ fn distance_within(camera: &Camera, half_angle: f64, sphere: &Sphere, inside: bo
         return Some(sphere.radius());
     }
     // |a × b| and a·b keep their precision at small angles, which an arc cosine does not.
-    let off_axis = camera.forward().cross(to_center).length().atan2(camera.forward().dot(to_center));
+    let off_axis =
+        camera.forward().cross(to_center).length().atan2(camera.forward().dot(to_center));
     let off = if inside {
         (off_axis + half_angle).min(std::f64::consts::PI)
     } else {
