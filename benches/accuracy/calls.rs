@@ -2,7 +2,7 @@
 
 use crate::functions::{Measured, short};
 use crate::options::open;
-use crate::turns::{self, Measure, Middle};
+use crate::turns::{self, Measure, Middle, above};
 use crate::wgsl::{Calls, MATH, SPHERE};
 use candor::gpu::Adapter;
 
@@ -99,9 +99,8 @@ pub fn measure_forms(adapter: &Adapter, rounds: u64) {
     let times = time(adapter, rounds, &functions, &calls.each_ref().map(String::as_str));
     println!("Nanoseconds per ray and sphere on the whole device, above the textbook's");
     for (form, row) in std::iter::zip(forms, &times) {
-        let extra = turns::extra(row, &times[0]);
-        let verdict = if form == forms[0] { "" } else { extra.verdict() };
-        println!("{form:20} {:>21} {extra:>24} {verdict}", Middle::of(row));
+        let verdict = above(row, &times[0]);
+        println!("{form:20} {:>21}{verdict}", Middle::of(row));
     }
     println!();
 }

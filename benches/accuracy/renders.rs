@@ -3,7 +3,7 @@
 use crate::functions::{Measured, Worst, short};
 use crate::hits::{LEAST_COSINE, RADII, Table, textbook};
 use crate::options::{open, root};
-use crate::turns::{self, Measure, Middle};
+use crate::turns::{self, Measure, Middle, above};
 use crate::wgsl::with_body;
 use candor::bound::sample_scale;
 use candor::cpu::CpuTracer;
@@ -118,22 +118,13 @@ fn measure_estimator(adapter: &Adapter, rounds: u64, estimator: Estimator, error
     for ((rung, row), own) in rungs.iter().zip(&times).zip(own) {
         let [circle, lobe] = [&circle[usize::from(own[0])], &lobe[usize::from(own[1])]];
         println!(
-            "{:24} {circle:>12} {lobe:>12} {:>23} {}",
+            "{:24} {circle:>12} {lobe:>12} {:>23}{}",
             rung.name,
             Middle::of(row),
             above(row, &times[0])
         );
     }
     println!();
-}
-
-/// What a rung takes above the first.
-fn above(row: &[f64], first: &[f64]) -> String {
-    if std::ptr::eq(row, first) {
-        return String::new();
-    }
-    let extra = turns::extra(row, first);
-    format!("{extra:>25} {}", extra.verdict())
 }
 
 /// The error of WGSL's way and of the kernel's.
@@ -193,13 +184,17 @@ pub fn measure_forms(adapter: &Adapter, rounds: u64, errors: &Table) {
     ];
     let times = times(rounds, &mut rungs);
     println!(
-        "Worst distance of a hit from the sphere that was meant (points up to 8 from the focus          along each axis,\nrays of up to 16, cosines from {LEAST_COSINE}), and nanoseconds per          sample, two-spheres.toml with walls of radius 100, implicit"
+        "Worst distance of a hit from the sphere that was meant (points up to 8 from the focus"
     );
+    println!(
+        "along each axis, rays of up to 16, cosines from {LEAST_COSINE}), and nanoseconds per sample,"
+    );
+    println!("two-spheres.toml with walls of radius 100, implicit");
     let radii = RADII.map(|radius| format!("{:>10}", format!("R = {radius:.0e}"))).concat();
     println!("{:24} {radii} {:>24} {:>25}", "", "", "above the first");
     for ((rung, row), off) in rungs.iter().zip(&times).zip(errors) {
         let off = off.map(|off| format!("{off:>10.1e}")).concat();
-        println!("{:24} {off} {:>24} {}", rung.name, Middle::of(row), above(row, &times[0]));
+        println!("{:24} {off} {:>24}{}", rung.name, Middle::of(row), above(row, &times[0]));
     }
     println!();
 }

@@ -33,10 +33,6 @@ impl Middle {
         Self { median: median(values), low: sorted[k - 1], high: sorted[n - k] }
     }
 
-    pub fn scaled(self, by: f64) -> Self {
-        Self { median: self.median * by, low: self.low * by, high: self.high * by }
-    }
-
     /// What it says of an extra cost.
     pub fn verdict(&self) -> &'static str {
         match (self.low > 0.0, self.high < 0.0) {
@@ -89,4 +85,13 @@ pub fn take(rounds: u64, rows: &mut [Measure]) -> Vec<Vec<f64>> {
 pub fn extra(values: &[f64], reference: &[f64]) -> Middle {
     let above: Vec<f64> = std::iter::zip(values, reference).map(|(a, b)| a - b).collect();
     Middle::of(&above)
+}
+
+/// What a rung takes above the first one and what that is called; nothing for the first.
+pub fn above(row: &[f64], first: &[f64]) -> String {
+    if std::ptr::eq(row, first) {
+        return String::new();
+    }
+    let extra = extra(row, first);
+    format!(" {extra:>25} {}", extra.verdict())
 }
