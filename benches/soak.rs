@@ -8,10 +8,12 @@
 #[path = "support/options.rs"]
 mod options;
 
+use candor::bound;
 use candor::gpu::{Adapter, GpuTracer};
+use candor::range::{self, Arithmetic};
 use candor::scene::{Estimator, Scene, load};
 use candor::tracer::{Ledger, Tracer};
-use std::fmt::Display;
+use candor::viewpoint::Viewpoint;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -36,10 +38,10 @@ fn tasks(adapter: &Adapter) -> Vec<(String, Scene)> {
     let mut tasks = Vec::new();
     for path in files {
         let name = path.strip_prefix(options::root()).unwrap_or(&path).display().to_string();
-        let scene = match load(&path) {
+        let scene = match loaded(&path) {
             Ok(scene) => scene,
             Err(error) => {
-                refused(&name, error);
+                refused(&name, &error);
                 continue;
             }
         };
@@ -47,20 +49,27 @@ fn tasks(adapter: &Adapter) -> Vec<(String, Scene)> {
             let settings = scene.settings().with_estimator(estimator);
             let scene = scene.clone().with_settings(settings);
             let name = format!("{name}, {}", estimator.name());
-            // As the command line does before it renders.
-            let accepted = candor::bound::check(&scene).map_err(|error| error.to_string());
+            let accepted = bound::check(&scene).map_err(|error| error.to_string());
             let opened = || GpuTracer::new(&scene, options::open(adapter)).map(drop);
             match accepted.and_then(|()| opened().map_err(|error| error.to_string())) {
                 Ok(()) => tasks.push((name, scene)),
-                Err(error) => refused(&name, error),
+                Err(error) => refused(&name, &error),
             }
         }
     }
     tasks
 }
 
-fn refused(name: &str, error: impl Display) {
-    println!("refused: {name}: {}", error.to_string().lines().next().unwrap_or_default());
+/// A scene that `candor render` would take.
+fn loaded(path: &Path) -> Result<Scene, String> {
+    let scene = load(path).map_err(|error| error.to_string())?;
+    range::check(&scene, &Viewpoint::of(&scene), Arithmetic::Single)
+        .map_err(|error| error.to_string())?;
+    Ok(scene)
+}
+
+fn refused(name: &str, error: &str) {
+    println!("refused: {name}: {}", error.lines().next().unwrap_or_default());
 }
 
 /// Traces at least `samples` samples; their number and what was invalid among them.
