@@ -7,9 +7,14 @@
 
 #![allow(clippy::cast_precision_loss, reason = "rates and ratios for show")]
 
+#[path = "support/options.rs"]
+mod options;
+#[path = "support/turns.rs"]
+mod turns;
+
 use candor::bound::sample_scale;
 use candor::cpu::CpuTracer;
-use candor::gpu::{Adapter, Gpu, GpuTracer, adapters};
+use candor::gpu::{Adapter, GpuTracer};
 use candor::kernel::{self, Kernel, Nearest};
 use candor::scene::{self, Estimator, ImageSize, Scene};
 use candor::tracer::Tracer;
@@ -22,16 +27,11 @@ use std::time::{Duration, Instant};
 const SPP: u64 = 32;
 
 fn main() {
-    let args: Vec<String> = std::env::args().collect();
-    let option = |name: &str| args.iter().position(|a| a == name).and_then(|i| args.get(i + 1));
-    let rounds = option("--rounds").map_or(9, |n| n.parse().expect("--rounds takes a number"));
-    let wanted = option("--device").map(|name| name.to_lowercase());
-    let adapter = adapters()
-        .into_iter()
-        .find(|a| wanted.as_ref().is_none_or(|name| a.name().to_lowercase().contains(name)))
-        .expect("a device is needed");
-    let scene = scene::load(&root().join("scenes/two-spheres.toml")).expect("the classic scene");
-    let estimator = option("--estimator").map_or(scene.settings().estimator(), |name| {
+    let rounds = options::count("--rounds").unwrap_or(9);
+    let adapter = options::adapter();
+    let scene =
+        scene::load(&options::root().join("scenes/two-spheres.toml")).expect("the classic scene");
+    let estimator = options::option("--estimator").map_or(scene.settings().estimator(), |name| {
         name.parse().expect("--estimator takes implicit, cosine, explicit or mis")
     });
     let settings = scene.settings().with_estimator(estimator);
@@ -52,9 +52,7 @@ fn main() {
     print_first_pixels(rounds);
     println!(
         "memory on the device: {:.1} bytes per pixel at 512x512",
-        GpuTracer::new(&scene, Gpu::open(&adapter).expect("a device"))
-            .expect("a tracer")
-            .device_bytes() as f64
+        GpuTracer::new(&scene, options::open(&adapter)).expect("a tracer").device_bytes() as f64
             / f64::from(scene.size().pixels())
     );
 }
@@ -94,7 +92,7 @@ impl Row {
 }
 
 fn rows(scene: &Scene, adapter: &Adapter) -> Vec<Row> {
-    let gpu = || Gpu::open(adapter).expect("a device");
+    let gpu = || options::open(adapter);
     let small = scene.clone().with_size(ImageSize::new(16, 16).expect("a size"));
     let viewpoint = Viewpoint::of(scene);
     let packed = kernel::pack(scene, &viewpoint, sample_scale(scene)).expect("it fits");
@@ -150,9 +148,9 @@ fn print_rates(rows: &[Row]) {
         println!(
             "{:32} {:9.2} {:>17}  {:.3}",
             row.name,
-            median(&row.rates),
+            turns::median(&row.rates),
             format!("({low:.2}..{high:.2})"),
-            median(&ratios)
+            turns::median(&ratios)
         );
     }
 }
@@ -166,7 +164,7 @@ fn print_first_pixels(rounds: u64) {
             let started = Instant::now();
             let status = Command::new(env!("CARGO_BIN_EXE_candor"))
                 .args(["render", "--spp", "1", "--quiet", "-o", "first.png"])
-                .arg(root().join("scenes/two-spheres.toml"))
+                .arg(options::root().join("scenes/two-spheres.toml"))
                 .current_dir(&folder)
                 .stdout(std::process::Stdio::null())
                 .status()
@@ -176,14 +174,14 @@ fn print_first_pixels(rounds: u64) {
         })
         .collect();
     std::fs::remove_dir_all(&folder).expect("the folder goes");
-    println!("first pixels: {:.3} s from start to PNG (median of {rounds})", median(&times));
+    println!("first pixels: {:.3} s from start to PNG (median of {rounds})", turns::median(&times));
 }
 
 fn build_limit() -> Option<PathBuf> {
     let binary = std::env::temp_dir().join(format!("candor-limit-{}", std::process::id()));
     let built = Command::new("g++")
         .args(["-O3", "-march=native", "-ffast-math", "-pthread", "-o"])
-        .args([binary.as_path(), &root().join("benches/limit.cpp")])
+        .args([binary.as_path(), &options::root().join("benches/limit.cpp")])
         .status();
     built.is_ok_and(|status| status.success()).then_some(binary)
 }
@@ -199,14 +197,4 @@ fn measure_limit(limit: &Path, rows: &mut [Row]) {
     let row = rows.last_mut().expect("the yardstick's row");
     row.rates.push(rate.expect("a rate"));
     std::thread::sleep(Duration::from_millis(50));
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
-}
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
 }

@@ -14,6 +14,7 @@ pub type Row = [u32; 4];
 #[derive(Debug)]
 pub struct Probe<'gpu> {
     gpu: &'gpu Gpu,
+    wgsl: String,
     module: wgpu::ShaderModule,
     scene: wgpu::Buffer,
 }
@@ -24,9 +25,22 @@ impl<'gpu> Probe<'gpu> {
     /// # Errors
     /// If the device refuses the kernel.
     pub fn new(gpu: &'gpu Gpu, scene: &layout::Scene) -> Result<Self, TraceError> {
+        Self::with_source(gpu, scene, probe_source())
+    }
+
+    /// Compiles another text whose entry points use the bindings of `shaders/probe.wgsl`:
+    /// what is compared with the kernel, or a kernel that is wrong on purpose.
+    ///
+    /// # Errors
+    /// If the device refuses the text.
+    pub fn with_source(
+        gpu: &'gpu Gpu,
+        scene: &layout::Scene,
+        wgsl: String,
+    ) -> Result<Self, TraceError> {
         let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("probe"),
-            source: wgpu::ShaderSource::Wgsl(probe_source().into()),
+            source: wgpu::ShaderSource::Wgsl(wgsl.as_str().into()),
         });
         gpu.check()?;
         let scene = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -34,7 +48,7 @@ impl<'gpu> Probe<'gpu> {
             contents: bytemuck::bytes_of(scene),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        Ok(Self { gpu, module, scene })
+        Ok(Self { gpu, wgsl, module, scene })
     }
 
     /// Runs the entry point once for each of the `results` rows that it writes.
@@ -93,7 +107,7 @@ impl<'gpu> Probe<'gpu> {
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             cache: None,
         });
-        let used = bindings_of(entry);
+        let used = bindings_of(&self.wgsl, entry);
         let entries: Vec<wgpu::BindGroupEntry> = buffers
             .iter()
             .filter(|(binding, _)| used.contains(binding))
@@ -120,8 +134,8 @@ impl<'gpu> Probe<'gpu> {
 }
 
 /// The bindings that an entry point reaches, from naga.
-fn bindings_of(entry: &str) -> Vec<u32> {
-    let (module, info) = validate(&probe_source()).expect("compiled before");
+fn bindings_of(wgsl: &str, entry: &str) -> Vec<u32> {
+    let (module, info) = validate(wgsl).expect("compiled before");
     let index = module
         .entry_points
         .iter()
