@@ -51,7 +51,10 @@ fn the_classic_scene_is_read_as_it_is_written() {
         sphere("right sphere", [1.3, -2.0, 0.5], 1.0, gloss),
     ];
     let scene = scene(&classic());
-    assert_eq!(scene.spheres(), expected);
+    // In a scene, spheres have numbers.
+    let expected =
+        Scene::new(scene.camera().clone(), scene.size(), scene.settings(), expected.into());
+    assert_eq!(scene.spheres(), expected.spheres());
     assert_eq!(scene.camera().position(), DVec3::new(0.0, 0.0, 9.0));
     assert_eq!(scene.camera().forward(), DVec3::NEG_Z);
     assert_eq!(scene.camera().up(), DVec3::Y);

@@ -126,15 +126,53 @@ fn scenery_does_not_move_the_focus() {
     }
 }
 
-/// Not a wall: the camera is many radii away, where the centre form is the better one.
+/// Not a wall: where rays start many radii away, the centre form is the better one. They
+/// start so far away only if the field is wide; a narrow one has its rays start nearer.
 #[test]
-fn far_spheres_are_factored_however_small_the_rest() {
+fn spheres_far_from_where_rays_start_are_factored() {
     let spheres = || vec![sphere([0.0, 3.05, 0.0], 0.05, white()), sphere([0.0; 3], 3.0, white())];
-    for (distance, form) in [(10.0, Form::Anchored), (100.0, Form::Factored)] {
-        let scene = scene([0.0, 0.0, distance], [0.0; 3], spheres());
+    let cases = [
+        (10.0, 45.0, Form::Anchored),
+        (100.0, 45.0, Form::Anchored),
+        (100.0, 179.0, Form::Factored),
+    ];
+    for (distance, fov, form) in cases {
+        let camera = Camera::new(DVec3::Z * distance, DVec3::ZERO, DVec3::Y, fov);
+        let size = ImageSize::new(8, 8).expect("a size");
+        let camera = camera.expect("a camera");
+        let scene = Scene::new(camera, size, RenderSettings::default(), spheres());
         let packed = pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits");
-        assert_eq!(packed.forms, [Form::Factored, form], "{distance}");
+        assert_eq!(packed.forms, [Form::Factored, form], "{distance}, {fov} degrees");
     }
+}
+
+/// The plane on which rays start lies before all that is in the field, and near it.
+#[test]
+fn rays_of_a_far_camera_start_just_before_what_they_see() {
+    let approach = |distance: f64, fov: f64, spheres: Vec<Sphere>| {
+        let camera = Camera::new(DVec3::Z * distance, DVec3::ZERO, DVec3::Y, fov);
+        let size = ImageSize::new(8, 8).expect("a size");
+        let camera = camera.expect("a camera");
+        let scene = Scene::new(camera, size, RenderSettings::default(), spheres);
+        Viewpoint::of(&scene).approach()
+    };
+    let balls = || vec![sphere([0.0; 3], 1.0, white()), sphere([3.0, 0.0, 0.0], 0.5, white())];
+    assert!(approach(9.0, 45.0, balls()) == 0.0, "a near camera has its rays start at itself");
+    let far = approach(1e6, 1e-4, balls());
+    assert!((1e6 - 10.0..1e6 - 1.0).contains(&far), "{far}");
+    // Something in the field that is nearer holds the plane back; beside the field it does not.
+    let held = |x: f64| {
+        let mut spheres = balls();
+        spheres.push(sphere([x, 0.0, 9e5], 0.5, white()));
+        approach(1e6, 1e-4, spheres)
+    };
+    assert!(held(0.0) < 1e5, "{}", held(0.0));
+    // Inside of a shell, rays start before they reach it.
+    let mut shell = balls();
+    shell.push(sphere([0.0, 0.0, 1e6 - 10.0], 500.0, white()));
+    assert!(approach(1e6, 1e-4, shell) <= 510.0);
+    // Nothing is in the field.
+    assert!(approach(1e6, 1e-4, vec![sphere([1e3, 0.0, 0.0], 1.0, white())]) == 0.0);
 }
 
 /// Only the first of spheres in one place can be seen.

@@ -4,6 +4,7 @@ use super::Arithmetic;
 use super::pairs::close_pairs;
 use crate::scene::{Scene, Sphere};
 use crate::viewpoint::Viewpoint;
+use glam::DVec3;
 
 /// A sphere by itself is seen true down to this share of the reach of its coordinates, in
 /// `f32`. Miss distances are off by some u of the reach, in both directions; the area seen
@@ -70,18 +71,24 @@ impl<'a> Judge<'a> {
 
     /// Two spheres that touch, overlap or nearly do.
     fn judge_pair(&self, small: &'a Sphere, large: &'a Sphere) -> Option<Fault<'a>> {
-        let limit = self.finest(small, large);
-        let distance = small.center().distance(large.center());
-        let sticks_out = distance - (large.radius() - small.radius());
-        let sticks_in = large.radius() + small.radius() - distance;
+        let away = small.center() - large.center();
+        let distance = away.length();
+        let outermost = small.radius() / distance.max(f64::MIN_POSITIVE) * away;
+        // How far the small one reaches out of the large one, and how far in; and how fine
+        // that is resolved where it does.
+        let out = distance - (large.radius() - small.radius());
+        let into = large.radius() + small.radius() - distance;
+        let out_limit = self.finest(small, large, small.center() + outermost);
+        let in_limit = self.finest(small, large, small.center() - outermost);
+        let limit = out_limit.max(in_limit);
         if small.radius() < limit {
-            let apart = sticks_in < -limit || sticks_out < -limit;
+            let apart = into < -limit || out < -limit;
             return (!apart).then_some(Fault::Close { small, large, limit });
         }
         // From inside, what is outside of the large one is the hidden part. What is hidden
         // altogether must be so by more than rounding.
         let inside = self.inside.contains(&large.ordinal());
-        let shown = if inside { sticks_in } else { sticks_out };
+        let (shown, limit) = if inside { (into, in_limit) } else { (out, out_limit) };
         let hidden = -limit * (SMALLEST / FINEST);
         (hidden < shown && shown < limit).then_some(Fault::Hidden { small, large, limit })
     }
@@ -123,11 +130,14 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The finest detail that is resolved where two spheres meet. A device computes there
-    /// around the smaller one; the twin's centre form loses digits to the larger.
-    fn finest(&self, small: &Sphere, large: &Sphere) -> f64 {
+    /// The finest detail that is resolved at a point where two spheres meet. A device computes
+    /// with that point; the twin's centre form loses digits to both spheres.
+    fn finest(&self, small: &Sphere, large: &Sphere, point: DVec3) -> f64 {
         let reach = match self.arithmetic {
-            Arithmetic::Single => self.reach(small),
+            Arithmetic::Single => {
+                let extent = self.viewpoint.extent();
+                point.distance(self.viewpoint.focus()) + extent + small.radius().min(extent)
+            }
             Arithmetic::Double => self.reach(small) + self.reach(large),
         };
         self.share(FINEST) * reach

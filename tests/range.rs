@@ -1,0 +1,175 @@
+//! The declared range: what is refused, where, and that the device is right at its limits.
+
+mod support {
+    pub mod gpu;
+    pub mod scenes;
+    pub mod tracers;
+}
+
+use candor::estimate::pair;
+use candor::range::{Arithmetic, OutOfRange, check};
+use candor::scene::{Camera, Estimator, Scene, Sphere};
+use candor::verify::{ALPHA, MAX_BIAS};
+use candor::viewpoint::Viewpoint;
+use glam::DVec3;
+use support::scenes::{classic, diffuse, emitter, size, sphere};
+use support::tracers::{film, on_device, twin};
+
+/// Where something small is put into the classic scene: free, in the air.
+const AIR: DVec3 = DVec3::new(0.37, 1.2, 1.13);
+/// The topmost point of its floor.
+const FLOOR: DVec3 = DVec3::new(0.0, -3.0, 0.0);
+
+/// The classic scene with more spheres, their numbers from 9 on.
+fn with(more: Vec<Sphere>) -> Scene {
+    let scene = classic(size(32, 32));
+    let spheres = scene.spheres().iter().cloned().chain(more).collect();
+    Scene::new(scene.camera().clone(), scene.size(), scene.settings(), spheres)
+}
+
+fn judged(scene: &Scene, arithmetic: Arithmetic) -> Result<(), OutOfRange> {
+    check(scene, &Viewpoint::of(scene), arithmetic)
+}
+
+/// The largest size, within a thousandth, at which `build` makes a scene that is refused, and
+/// what is said of it; the limit by which a user would go.
+fn limit(build: impl Fn(f64) -> Scene, arithmetic: Arithmetic) -> (f64, OutOfRange) {
+    let (mut low, mut high) = (1e-14, 0.4);
+    assert!(judged(&build(high), arithmetic).is_ok());
+    let mut refusal = judged(&build(low), arithmetic)
+        .expect_err(&format!("it is tiny: {:?}", build(low).spheres().last()));
+    while high / low > 1.001 {
+        let middle = (low * high).sqrt();
+        match judged(&build(middle), arithmetic) {
+            Ok(()) => high = middle,
+            Err(out) => (low, refusal) = (middle, out),
+        }
+    }
+    (high, refusal)
+}
+
+fn lone(radius: f64) -> Scene {
+    with(vec![sphere(AIR, radius, emitter([50.0; 3]))])
+}
+
+fn touching(radius: f64) -> Scene {
+    let beside = AIR + 2.0 * radius * DVec3::new(0.6, 0.8, 0.0);
+    with(vec![sphere(AIR, radius, diffuse(0.8)), sphere(beside, radius, emitter([50.0; 3]))])
+}
+
+fn resting(radius: f64) -> Scene {
+    with(vec![sphere(FLOOR + radius * DVec3::Y, radius, emitter([50.0; 3]))])
+}
+
+/// A lamp in the floor, of which so much shows.
+fn sunk(height: f64) -> Scene {
+    with(vec![sphere(FLOOR + (height - 0.5) * DVec3::Y, 0.5, emitter([50.0; 3]))])
+}
+
+/// A picture of the left sphere's rim that is so wide.
+fn narrow(width: f64) -> Scene {
+    let scene = classic(size(32, 32));
+    let position = scene.camera().position();
+    // Where a ray touches the unit sphere around the centre.
+    let center = DVec3::new(-1.3, -2.0, -1.0);
+    let towards = (position - center).normalize();
+    let aside = towards.cross(DVec3::X).normalize();
+    let sine = 1.0 / position.distance(center);
+    let rim = center + sine * towards + (1.0 - sine * sine).sqrt() * aside;
+    let fov = 2.0 * (width / 2.0 / position.distance(rim)).atan().to_degrees();
+    let camera = Camera::new(position, rim, DVec3::Y, fov).expect("a camera");
+    Scene::new(camera, scene.size(), scene.settings(), scene.spheres().to_vec())
+}
+
+/// A way to make a scene with something of a size, what a user may expect to be allowed in
+/// the classic scene, and what the refusal says.
+type Kind = (&'static str, fn(f64) -> Scene, std::ops::Range<f64>, &'static str);
+
+const KINDS: [Kind; 5] = [
+    ("lone", lone, 3e-5..6e-5, "is too small for the single precision"),
+    ("touching", touching, 8e-4..1.5e-3, "is too small, so near to sphere 10, for"),
+    ("resting", resting, 8e-4..1.5e-3, "is too small, so near to sphere 4 (`floor`), for"),
+    ("sunk", sunk, 8e-4..1.5e-3, "is hidden by sphere 4 (`floor`) but for a part too small"),
+    ("narrow", narrow, 8e-4..3e-3, "the field of view is too narrow for the single precision"),
+];
+
+#[test]
+fn each_kind_has_its_limit_and_its_words() {
+    for (name, build, expected, words) in KINDS {
+        let (limit, refusal) = limit(build, Arithmetic::Single);
+        assert!(expected.contains(&limit), "{name}: {limit}");
+        let text = refusal.to_string();
+        assert!(text.contains(words) && text.contains("here it takes") || name == "sunk", "{text}");
+        assert!(text.ends_with("(--device cpu takes this scene)"), "{text}");
+        assert_eq!(refusal.sphere.is_some(), name != "narrow");
+        // The twin has 29 more bits; it computes from the scene's origin and by centres, which
+        // takes some of them where a wall is 1e5 large.
+        let (twin, _) = self::limit(build, Arithmetic::Double);
+        assert!(twin < 1e-4 * limit, "{name}: {twin}");
+    }
+}
+
+/// At the limit, the device's image mean is within 0.1 % of the twin's.
+#[test]
+fn the_device_is_right_at_the_limits() {
+    for (name, build, ..) in KINDS {
+        let (limit, _) = limit(build, Arithmetic::Single);
+        let scene = build(limit);
+        let settings = scene.settings().with_estimator(Estimator::Mis);
+        let scene = scene.with_settings(settings);
+        let range = [0..1024];
+        let found = pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range));
+        println!(
+            "{name:<9}{limit:.2e} {:+.1?} ± {:.1?} ppm",
+            found.bias.map(|b| 1e6 * b),
+            found.error.map(|e| 1e6 * e)
+        );
+        assert!(found.is_within(MAX_BIAS, ALPHA), "{name}: {found:?}");
+    }
+}
+
+/// What is far beyond a limit is wrong on a device: a picture of a rim that is 1e-6 wide.
+#[test]
+fn far_beyond_a_limit_the_device_is_wrong() {
+    let scene = narrow(1e-6);
+    assert!(judged(&scene, Arithmetic::Single).is_err());
+    let scene = scene.clone().with_settings(scene.settings().with_estimator(Estimator::Mis));
+    let range = [0..1024];
+    let found = pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range));
+    println!("{found:?}");
+    assert!(found.exceeds(MAX_BIAS, ALPHA), "{found:?}");
+}
+
+/// Usual scenes are not refused: walls, things on the floor, things that overlap or hold
+/// each other, cameras on surfaces and inside.
+#[test]
+fn usual_scenes_are_in_range() {
+    let chalk = || diffuse(0.8);
+    let scenes = [
+        classic(size(8, 8)),
+        with(vec![sphere([0.0, -2.99, 0.0], 0.01, chalk())]),
+        with(vec![sphere([0.0, -2.9999, 0.0], 0.1, chalk())]),
+        // Shells of 1e-4, the inner one unseen.
+        with(vec![sphere(AIR, 0.3, chalk()), sphere(AIR, 0.3 - 1e-4, chalk())]),
+        // A lamp in the middle of a hollow sphere around all.
+        with(vec![sphere(DVec3::ZERO, 50.0, chalk())]),
+        support::scenes::room(1e5, true),
+        support::scenes::room(1e9, true),
+        support::scenes::many(size(8, 8)),
+    ];
+    for (i, scene) in scenes.iter().enumerate() {
+        for arithmetic in [Arithmetic::Single, Arithmetic::Double] {
+            assert_eq!(judged(scene, arithmetic), Ok(()), "scene {i}, {arithmetic:?}");
+        }
+    }
+}
+
+/// The twin's centre form loses the surface of a wall that is huge even for `f64`, and the
+/// device's does not.
+#[test]
+fn planes_are_for_devices() {
+    let scene = with(vec![sphere([0.0, -1e14 - 3.5, 0.0], 1e14, diffuse(0.5))]);
+    assert_eq!(judged(&scene, Arithmetic::Single), Ok(()));
+    let refusal = judged(&scene, Arithmetic::Double).expect_err("53 bits");
+    assert!(refusal.to_string().ends_with("(a device takes this scene)"), "{refusal}");
+}
