@@ -6,4 +6,4 @@ mod pack;
 
 pub use compose::{Kernel, Lights, Nearest, Tile, UNROLLED_SPHERES, probe_source, validate};
 pub use layout::SPHERE_CAPACITY;
-pub use pack::{Form, KernelUnits, Packed, TooManySpheres, pack};
+pub use pack::{Form, KernelUnits, Packed, TooManySpheres, check_count, pack};

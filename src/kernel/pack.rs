@@ -73,6 +73,15 @@ impl Packed {
     }
 }
 
+/// Checks that the uniform buffer holds all spheres.
+///
+/// # Errors
+/// If there are more than [`SPHERE_CAPACITY`].
+pub fn check_count(scene: &Scene) -> Result<(), TooManySpheres> {
+    let count = scene.spheres().len();
+    if count > SPHERE_CAPACITY { Err(TooManySpheres(count)) } else { Ok(()) }
+}
+
 /// Packs a scene for the device.
 ///
 /// # Errors
@@ -83,9 +92,7 @@ pub fn pack(
     scale: SampleScale,
 ) -> Result<Packed, TooManySpheres> {
     let spheres = scene.spheres();
-    if spheres.len() > SPHERE_CAPACITY {
-        return Err(TooManySpheres(spheres.len()));
-    }
+    check_count(scene)?;
     let units = KernelUnits::of(viewpoint);
     let forms: Vec<Form> = spheres.iter().map(|s| form_of(s, scene, viewpoint)).collect();
     let of_form = |wanted| {

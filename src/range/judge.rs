@@ -1,7 +1,7 @@
 //! What of a scene is too small beside its coordinates.
 
 use super::Arithmetic;
-use super::pairs::close_pairs;
+use super::pairs::{TooManyPairs, visit_close_pairs};
 use crate::scene::{Scene, Sphere};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
@@ -27,6 +27,8 @@ pub(super) enum Fault<'a> {
     Close { small: &'a Sphere, large: &'a Sphere, limit: f64 },
     /// The part of a sphere that another one does not hide.
     Hidden { small: &'a Sphere, large: &'a Sphere, limit: f64 },
+    /// Too many spheres overlap for all pairs to be looked at.
+    Crowded { sphere: &'a Sphere },
     /// The field of view, in degrees.
     Narrow { degrees: f64, limit: f64 },
 }
@@ -61,12 +63,20 @@ impl<'a> Judge<'a> {
     fn first_pair(&self) -> Option<Fault<'a>> {
         // Where two meet, neither's reach is more than some three times the other's.
         let margin = |sphere: &Sphere| 8.0 * self.share(FINEST) * self.reach(sphere);
-        let pairs = close_pairs(self.scene.spheres(), margin).into_iter();
-        let faults = pairs.filter_map(|(a, b)| {
+        let mut first: Option<(usize, Fault<'a>)> = None;
+        let visited = visit_close_pairs(self.scene.spheres(), margin, |a, b| {
             let (small, large) = if a.radius() <= b.radius() { (a, b) } else { (b, a) };
-            self.judge_pair(small, large).map(|fault| (small.ordinal(), fault))
+            let is_first = first.as_ref().is_none_or(|&(ordinal, _)| small.ordinal() < ordinal);
+            if let Some(fault) = is_first.then(|| self.judge_pair(small, large)).flatten() {
+                first = Some((small.ordinal(), fault));
+            }
         });
-        faults.min_by_key(|&(ordinal, _)| ordinal).map(|(_, fault)| fault)
+        match visited {
+            Ok(()) => first.map(|(_, fault)| fault),
+            Err(TooManyPairs) => {
+                self.scene.spheres().first().map(|sphere| Fault::Crowded { sphere })
+            }
+        }
     }
 
     /// Two spheres that touch, overlap or nearly do.

@@ -67,7 +67,9 @@ pub fn check(
     };
     let mut out = explain(&fault, arithmetic);
     let (other, advice) = arithmetic.other();
-    if Judge::new(scene, viewpoint, other).first().is_none() {
+    if !matches!(fault, Fault::Crowded { .. })
+        && Judge::new(scene, viewpoint, other).first().is_none()
+    {
         out.allowed = format!("{} ({advice})", out.allowed);
     }
     Err(out)
@@ -98,6 +100,12 @@ fn explain(fault: &Fault<'_>, arithmetic: Arithmetic) -> OutOfRange {
             Some(small),
             format!("is hidden by {} but for a part too small for {precision}", large.title()),
             format!("move it through that surface, either way, by more than {}", short(limit)),
+        ),
+        Fault::Crowded { sphere } => (
+            Some(sphere),
+            "is one of too many spheres that overlap".to_owned(),
+            "it takes some ten thousand that all overlap each other, or more that do not"
+                .to_owned(),
         ),
         Fault::Narrow { degrees, limit } => (
             None,

@@ -2,24 +2,41 @@
 
 use crate::scene::Sphere;
 
-/// Every pair whose boxes are nearer to each other than `margin` of either. Sorted along x
-/// and swept, so that spheres far apart cost nothing.
-pub(super) fn close_pairs(
-    spheres: &[Sphere],
+/// Most pairs that are looked at, some seconds of work. Only spheres that nearly all overlap
+/// make so many, 16,000 of them.
+const MOST_PAIRS: u64 = 1 << 27;
+
+/// More than [`MOST_PAIRS`] pairs.
+pub(super) struct TooManyPairs;
+
+/// Visits every pair whose boxes are nearer to each other than `margin` of either. Sorted
+/// along x and swept, so that spheres far apart cost nothing.
+pub(super) fn visit_close_pairs<'a>(
+    spheres: &'a [Sphere],
     margin: impl Fn(&Sphere) -> f64,
-) -> Vec<(&Sphere, &Sphere)> {
-    let low = |s: &Sphere| s.center().x - s.radius();
-    let mut sorted: Vec<&Sphere> = spheres.iter().collect();
-    sorted.sort_by(|a, b| low(a).total_cmp(&low(b)));
-    let (mut open, mut found): (Vec<&Sphere>, _) = (Vec::new(), Vec::new());
-    for sphere in sorted {
-        open.retain(|other| other.center().x + other.radius() + margin(other) >= low(sphere));
-        found.extend(open.iter().filter_map(|other| {
+    mut visit: impl FnMut(&'a Sphere, &'a Sphere),
+) -> Result<(), TooManyPairs> {
+    let boxed = |sphere: &'a Sphere| {
+        let reach = sphere.radius() + margin(sphere);
+        (sphere.center().x - reach, sphere.center().x + reach, sphere, margin(sphere))
+    };
+    let mut sorted: Vec<(f64, f64, &Sphere, f64)> = spheres.iter().map(boxed).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut open: Vec<(f64, &Sphere, f64)> = Vec::new();
+    let mut looked_at = 0;
+    for (low, high, sphere, margin) in sorted {
+        open.retain(|&(other_high, ..)| other_high >= low);
+        looked_at += open.len() as u64;
+        if looked_at > MOST_PAIRS {
+            return Err(TooManyPairs);
+        }
+        for &(_, other, other_margin) in &open {
             let apart = (sphere.center() - other.center()).abs().max_element();
-            let near = sphere.radius() + other.radius() + margin(sphere).max(margin(other));
-            (apart <= near).then_some((*other, sphere))
-        }));
-        open.push(sphere);
+            if apart <= sphere.radius() + other.radius() + margin.max(other_margin) {
+                visit(other, sphere);
+            }
+        }
+        open.push((high, sphere, margin));
     }
-    found
+    Ok(())
 }
