@@ -1,6 +1,8 @@
 //! Cases of whole pictures: how samples are divided, what sizes and counts do, and what
 //! must be the same in two pictures.
 
+#![expect(clippy::single_range_in_vec_init, reason = "one way of dividing the samples")]
+
 use crate::support::gpu;
 use crate::support::scenes::{
     classic, diffuse, emitter, glossy, packed, seen, size, sphere, with_seed,
@@ -47,7 +49,7 @@ fn same(accepts: bool) -> Verdict {
 /// 5: where no path met the light, the error is unproven, and not zero.
 fn unproven() -> Line {
     let scene = under(&hard("05-tiny-lamp"), Estimator::Implicit);
-    let (film, _) = trace(&mut on_device(&scene), std::slice::from_ref(&(0..64)));
+    let (film, _) = trace(&mut on_device(&scene), &[0..64]);
     let pixels = u64::from(scene.size().pixels());
     let judge = |summary: &Summary| {
         let open = summary.relative_error.is_none() && summary.error_bound.is_none();
@@ -70,7 +72,7 @@ fn one_mean() -> Line {
     let scene = hard("25-lamps-touch-and-overlap");
     let (implicit, explicit) =
         (under(&scene, Estimator::Implicit), under(&with_seed(&scene, 1), Estimator::Explicit));
-    let range = std::slice::from_ref(&(0..1024));
+    let range = &[0..1024];
     let reference = film_of(&implicit, &kernel(&implicit), range);
     let judge = |text: &str| {
         let found = compare(&film_of(&explicit, text, &[0..256]), &reference);
@@ -118,7 +120,7 @@ fn divisions() -> Line {
     let divisions: [Vec<Range<u64>>; 3] =
         [vec![0..8, 8..21], vec![8..21, 0..8], seven.map(|(start, end)| start..end).into()];
     let judge = |text: &str| {
-        let whole = film_of(&scene, text, std::slice::from_ref(&(0..21)));
+        let whole = film_of(&scene, text, &[0..21]);
         let lit = whole.pixels().iter().flatten().any(|&word| word > 0);
         same(lit && divisions.iter().all(|parts| film_of(&scene, text, parts) == whole))
     };
@@ -149,7 +151,7 @@ fn sizes() -> impl Iterator<Item = Line> {
     let sizes = [(16384, 1), (1, 16384), (1, 1)];
     sizes.into_iter().map(|(width, height)| {
         let scene = under(&classic(size(width, height)), Estimator::Mis);
-        let reference = trace(&mut twin(&scene), std::slice::from_ref(&(0..8))).0;
+        let reference = trace(&mut twin(&scene), &[0..8]).0;
         let judge = |text: &str| {
             let share = differing(&film_of(&scene, text, &[0..8]), &reference);
             let found = format!("{:.2} % of pixels differ", 100.0 * share);
@@ -184,7 +186,7 @@ fn extreme_paths() -> impl Iterator<Item = Line> {
         let ends = changed(&scene, number, "select(0.0, 0.99999994, (bits & 1u) == 1u)");
         let judge = |text: &str| {
             let mut tracer = with_kernel(&scene, text);
-            let (film, ledger) = trace(&mut tracer, std::slice::from_ref(&(0..256)));
+            let (film, ledger) = trace(&mut tracer, &[0..256]);
             let mean = summarize(&film).luminance;
             let accepts = ledger.count == 0 && (mean - truth).abs() <= WITHIN;
             Verdict { accepts, found: format!("{mean:.3}, {} invalid", ledger.count) }
@@ -227,7 +229,7 @@ fn crowd(spheres: u32, lamps: u32, bounces: u32) -> Scene {
 /// 30: loops over more samples and spheres than lavapipe's limit of 65,535 iterations.
 fn long_loops() -> [Line; 2] {
     let scene = crowd(300, 40, 2);
-    let samples = std::slice::from_ref(&(0..256));
+    let samples = &[0..256];
     let reference = trace(&mut twin(&scene), samples).0;
     let judge = |text: &str| {
         let (film, ledger) = trace(&mut with_kernel(&scene, text), samples);
@@ -280,7 +282,7 @@ fn moved(scale: f64, shift: f64, rounded: &dyn Fn(DVec3) -> DVec3) -> Scene {
 /// 32: the picture does not depend on where the scene is and in which unit. The stated loss
 /// is `verify`'s: paths that rounding sends elsewhere.
 fn places_and_units() -> impl Iterator<Item = Line> {
-    let samples = std::slice::from_ref(&(0..256));
+    let samples = &[0..256];
     let here = trace(&mut on_device(&moved(1.0, 0.0, &|p| p)), samples).0;
     [
         ("translated by 1e4", 1.0, 1e4),

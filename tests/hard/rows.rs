@@ -40,8 +40,16 @@ fn tangents() -> Vec<Case> {
         let direction = DVec3::new(turn.cos(), turn.sin(), 0.0).as_vec3();
         let origin = DVec3::new(-10.0, 1e-4 * f64::from(height), 0.0).as_vec3();
         let (side, position) = (Side::Entry, Vec3::Y);
-        let (radius, size, offset, anchored) = (1e6, 1e-6, 0.0, true);
-        Case { radius, anchored, side, origin, direction, position, size, offset }
+        Case {
+            radius: 1e6,
+            anchored: true,
+            side,
+            origin,
+            direction,
+            position,
+            size: 1e-6,
+            offset: 0.0,
+        }
     };
     let heights = |angle| (0..=10).map(move |height| ray(angle, height));
     (-100..=100).flat_map(heights).collect()

@@ -10,6 +10,7 @@ use candor::gpu::GpuTracer;
 use candor::scene::Estimator::{self, Cosine, Explicit, Implicit, Mis};
 use candor::scene::{Scene, load, parse};
 use candor::verify::{ALPHA, MAX_BIAS};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -238,6 +239,13 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/hard")
 }
 
+/// The scenes in the folder, without their ending.
+fn names() -> BTreeSet<String> {
+    let entries = fs::read_dir(folder()).expect("scenes/hard can be listed");
+    let paths = entries.map(|entry| entry.expect("scenes/hard can be listed").path());
+    paths.map(|path| path.file_stem().expect("a name").to_string_lossy().into_owned()).collect()
+}
+
 impl Case {
     fn scene(&self, seed: u32) -> Scene {
         let scene = load(&folder().join(format!("{}.toml", self.file))).expect("a valid scene");
@@ -245,9 +253,11 @@ impl Case {
         scene.with_settings(settings)
     }
 
-    fn judge(&self, scene: &Scene, tracer: &mut GpuTracer, claims: usize) -> Verdict {
+    /// The verdict, and whether the effect that must not go unnoticed would have shown.
+    fn judge(&self, scene: &Scene, tracer: &mut GpuTracer, claims: usize) -> (Verdict, bool) {
         let (film, ledger) = trace(tracer, std::slice::from_ref(&(0..self.samples)));
         let valid = ledger.count == 0 && film.samples().count() == self.samples;
+        let mut sees = true;
         let (accepts, found) = match self.expected {
             Expected::Exactly(rgb) => {
                 let exact = is_exactly(&film, rgb, self.samples);
@@ -257,9 +267,9 @@ impl Case {
                 let estimate = Estimate::of(&film, Quantity::Channel(1));
                 let limit = limit(claims, estimate.freedom);
                 let z = deviation(estimate, truth, bias);
-                let detects = detectable(estimate, truth, bias, limit);
+                sees = detectable(estimate, truth, bias, limit) <= effect;
                 let found = format!("{:.6e} ± {:.1e}", estimate.mean, estimate.standard_error);
-                (z.abs() <= limit && detects <= effect, found)
+                (z.abs() <= limit, found)
             }
             Expected::Twin => {
                 let theirs = trace(&mut twin(scene), std::slice::from_ref(&(0..self.samples))).0;
@@ -269,7 +279,7 @@ impl Case {
             }
         };
         let found = if valid { found } else { format!("{} invalid samples", ledger.count) };
-        Verdict { accepts: accepts && valid, found }
+        (Verdict { accepts: accepts && valid, found }, sees)
     }
 
     fn line(&self, seed: u32, claims: usize) -> Line {
@@ -279,17 +289,21 @@ impl Case {
         let times = text.matches(from).count();
         assert_eq!(times, 1, "{}: occurrences of {from:?} in the kernel", self.file);
         let judge = |text: &str| self.judge(&scene, &mut with_kernel(&scene, text), claims);
+        let (right, has_power) = judge(&text);
+        assert!(has_power, "{}: an error that must be seen would not", self.file);
         Line {
             case: self.number,
             place: format!("{}, {}", self.file, self.estimator.name()),
             expected: match self.expected {
                 Expected::Exactly([r, g, b]) => format!("exactly {r} {g} {b}"),
-                Expected::Mean { truth, .. } => format!("{truth:.6e}"),
+                Expected::Mean { truth, effect, .. } => {
+                    format!("{truth:.6e}, to {:.0} %", 100.0 * effect)
+                }
                 Expected::Twin => "the twin within 0.1 %".to_owned(),
             },
-            right: judge(&text),
+            right,
             fault,
-            wrong: judge(&text.replace(from, to)),
+            wrong: judge(&text.replace(from, to)).0,
         }
     }
 }
@@ -339,5 +353,7 @@ pub fn lines() -> Vec<Line> {
     let judged = (0..).zip(&cases).map(|(seed, case)| case.line(seed, claims));
     let mut lines: Vec<Line> = judged.collect();
     lines.extend(refused());
+    let files = cases.iter().map(|case| case.file).chain(REFUSED.map(|row| row.1));
+    assert_eq!(files.map(str::to_owned).collect::<BTreeSet<_>>(), names(), "every scene is used");
     lines
 }
