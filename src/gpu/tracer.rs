@@ -21,6 +21,10 @@ const MAX_ITERATIONS: u64 = 65_535;
 /// below.
 const _: () = assert!((MAX_BOUNCES as u64 + 1) * (SPHERE_CAPACITY as u64 + 1) < MAX_ITERATIONS);
 
+/// The device counts invalid samples in 32 bits, so its ledger is taken to the host before it
+/// can have met that many: after this many samples and one more dispatch, which is shorter.
+const MAX_UNREAD: u64 = 1 << 31;
+
 /// Workgroups along one dimension of a dispatch, WebGPU's default limit.
 const MAX_WORKGROUPS: u32 = 65_535;
 
@@ -35,6 +39,10 @@ pub struct GpuTracer {
     pipeline: wgpu::ComputePipeline,
     work: wgpu::Buffer,
     ledger: wgpu::Buffer,
+    /// What was taken from the device's ledger so far.
+    invalid: Ledger,
+    /// Samples since then.
+    unread: u64,
     bands: Vec<(Band, wgpu::BindGroup)>,
     pace: Pace,
 }
@@ -81,7 +89,9 @@ impl GpuTracer {
         let ledger = buffer::<layout::Ledger>(
             device,
             "ledger",
-            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
         );
         let layout = pipeline.get_bind_group_layout(0);
         let bands = bands::allocate(&gpu, scene.size())?
@@ -101,6 +111,8 @@ impl GpuTracer {
             pipeline,
             work,
             ledger,
+            invalid: Ledger::default(),
+            unread: 0,
             bands,
             pace: Pace::default(),
         })
@@ -150,7 +162,24 @@ impl GpuTracer {
         let samples =
             u64::from(self.size.width()) * u64::from(rows.end - rows.start) * u64::from(count);
         self.pace.learn(samples, started.elapsed());
-        Ok(())
+        self.unread += samples;
+        if self.unread >= MAX_UNREAD { self.take_ledger() } else { Ok(()) }
+    }
+
+    /// Moves what the device's ledger holds to the host's.
+    fn take_ledger(&mut self) -> Result<(), TraceError> {
+        let bytes = bands::read_buffer(&self.gpu, &self.ledger)?;
+        let ledger: layout::Ledger = bytemuck::pod_read_unaligned(&bytes);
+        let records = ledger.records.as_chunks().0.iter().take(ledger.count as usize);
+        self.invalid.append(Ledger {
+            count: u64::from(ledger.count),
+            records: records.map(|record| invalid_sample(record, self.scale.bound())).collect(),
+        });
+        self.unread = 0;
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.clear_buffer(&self.ledger, 0, None);
+        self.gpu.run(encoder)
     }
 
     /// Samples of every pixel that one round of dispatches traces, at most `left`.
@@ -197,22 +226,27 @@ impl Tracer for GpuTracer {
     }
 
     fn ledger(&mut self) -> Result<Ledger, TraceError> {
-        let bytes = bands::read_buffer(&self.gpu, &self.ledger)?;
-        let ledger: layout::Ledger = bytemuck::pod_read_unaligned(&bytes);
-        let records = ledger.records.as_chunks().0.iter().take(ledger.count as usize);
-        let records = records.map(|&[pixel, low, high, reason]| InvalidSample {
-            pixel,
-            index: u64::from(high) << 32 | u64::from(low),
-            reason: match reason {
-                layout::REASON_UNFINISHED => InvalidReason::Unfinished,
-                _ => InvalidReason::OutOfBounds,
-            },
-        });
-        Ok(Ledger { count: u64::from(ledger.count), records: records.collect() })
+        self.take_ledger()?;
+        Ok(self.invalid.clone())
     }
 
     fn describe(&self) -> Description {
         self.gpu.description().clone()
+    }
+}
+
+/// A record of the device's ledger, and what its bits say of the reason.
+fn invalid_sample(record: &[u32; layout::RECORD_WORDS], bound: f32) -> InvalidSample {
+    let &[pixel, low, high, finished, r, g, b, _] = record;
+    let wrong = InvalidReason::of([r, g, b].map(f32::from_bits), bound);
+    InvalidSample {
+        pixel,
+        index: u64::from(high) << 32 | u64::from(low),
+        reason: match wrong {
+            _ if finished == 0 => InvalidReason::Unfinished,
+            Some(reason) => reason,
+            None => InvalidReason::AboveBound,
+        },
     }
 }
 

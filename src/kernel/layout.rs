@@ -2,14 +2,15 @@
 //! field for field; `tests/layout.rs` compares them with naga's offsets and through an
 //! echo on the device. Padding that WGSL leaves implicit is spelled out here.
 
+use crate::tracer::LEDGER_RECORDS;
 use bytemuck::{Pod, Zeroable};
 
 /// Spheres that the uniform buffer holds.
 pub const SPHERE_CAPACITY: usize = 512;
 /// In place of a sphere, in the kernel and in the probe's tables: none.
 pub const NO_SPHERE: u32 = u32::MAX;
-/// Invalid samples that the ledger records.
-pub const LEDGER_RECORDS: usize = 16;
+/// Words of one record of the ledger.
+pub const RECORD_WORDS: usize = 8;
 
 /// [`Sphere::kind`] of an emitter.
 pub const KIND_EMITTER: u32 = 0;
@@ -17,11 +18,6 @@ pub const KIND_EMITTER: u32 = 0;
 pub const KIND_DIFFUSE: u32 = 1;
 /// [`Sphere::kind`] of a glossy surface.
 pub const KIND_GLOSSY: u32 = 2;
-
-/// Ledger reason: a loop was cut short.
-pub const REASON_UNFINISHED: u32 = 1;
-/// Ledger reason: not a number from 0 to the bound.
-pub const REASON_OUT_OF_BOUNDS: u32 = 2;
 
 /// One sphere, in kernel units.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -103,7 +99,7 @@ pub struct Dispatch {
 pub struct Ledger {
     /// How many.
     pub count: u32,
-    /// The first ones, four words each: pixel, low and high word of the sample index, and
-    /// one of the `REASON_` constants.
-    pub records: [u32; 4 * LEDGER_RECORDS],
+    /// The first ones: pixel, low and high word of the sample index, 1 if it was finished, the
+    /// bit patterns of its radiance, and 0.
+    pub records: [u32; RECORD_WORDS * LEDGER_RECORDS],
 }
