@@ -26,6 +26,7 @@ pub mod report;
 pub mod scene;
 pub mod sweep;
 pub mod tracer;
+pub mod trail;
 mod units;
 pub mod verify;
 pub mod viewpoint;

@@ -10,12 +10,14 @@ mod light;
 pub mod material;
 mod nearest;
 mod pick;
+mod replay;
 pub mod rng;
 pub mod sampling;
 mod scene;
 pub mod sphere;
 mod trace;
 
+pub use replay::replay;
 pub use rng::SampleKey;
 pub use scene::PreparedScene;
 pub use trace::trace;
