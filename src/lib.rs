@@ -22,6 +22,7 @@ pub mod kernel;
 pub mod pilot;
 pub mod range;
 pub mod render;
+pub mod replay;
 pub mod report;
 pub mod scene;
 pub mod sweep;

@@ -74,7 +74,7 @@ impl GpuTracer {
         wgsl: &str,
     ) -> Result<Self, TraceError> {
         let device = gpu.device();
-        let pipeline = pipeline(device, wgsl);
+        let pipeline = pipeline(device, wgsl, "render");
         gpu.check()?;
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("scene"),
@@ -97,7 +97,7 @@ impl GpuTracer {
         let bands = bands::allocate(&gpu, scene.size())?
             .into_iter()
             .map(|band| {
-                let group = bind(device, &layout, [&uniform, &work, &band.buffer, &ledger]);
+                let group = bind(device, &layout, &[&uniform, &work, &band.buffer, &ledger]);
                 (band, group)
             })
             .collect();
@@ -253,7 +253,7 @@ fn invalid_sample(record: &[u32; layout::RECORD_WORDS], bound: f32) -> InvalidSa
 /// Refuses paths whose loops a driver may cut short: a vertex that samples lights goes
 /// through the spheres twice and through the lights up to three times (two passes to
 /// pick one, one for the chance of one that the path hits by itself).
-fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceError> {
+pub(super) fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceError> {
     if !scene.settings().estimator().samples_lights() {
         return Ok(());
     }
@@ -272,22 +272,22 @@ fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceE
     )))
 }
 
-fn pipeline(device: &wgpu::Device, wgsl: &str) -> wgpu::ComputePipeline {
+pub(super) fn pipeline(device: &wgpu::Device, wgsl: &str, entry: &str) -> wgpu::ComputePipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("candor kernel"),
         source: wgpu::ShaderSource::Wgsl(wgsl.into()),
     });
     device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("render"),
+        label: Some(entry),
         layout: None,
         module: &module,
-        entry_point: Some("render"),
+        entry_point: Some(entry),
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     })
 }
 
-fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(super) fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size_of::<T>() as u64,
@@ -296,10 +296,10 @@ fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> w
     })
 }
 
-fn bind(
+pub(super) fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    buffers: [&wgpu::Buffer; 4],
+    buffers: &[&wgpu::Buffer],
 ) -> wgpu::BindGroup {
     let entries: Vec<wgpu::BindGroupEntry> = (0..)
         .zip(buffers)

@@ -103,3 +103,54 @@ pub struct Ledger {
     /// bit patterns of its radiance, and 0.
     pub records: [u32; RECORD_WORDS * LEDGER_RECORDS],
 }
+
+/// What the entry point `replay` is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Request {
+    /// Pixel number, row by row from the top.
+    pub pixel: u32,
+    /// Low word of the sample index.
+    pub index_low: u32,
+    /// High word of the sample index.
+    pub index_high: u32,
+    /// The segment to record; that from the camera is 0.
+    pub segment: u32,
+}
+
+/// In place of a sphere: a driver cut the search short.
+pub const UNFINISHED: u32 = u32::MAX - 1;
+
+/// One segment of a path, in kernel units, and the sample's radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Replay {
+    /// Where the ray starts.
+    pub origin: [f32; 3],
+    /// 1 where the path came this far.
+    pub reached: u32,
+    /// Unit vector along the ray.
+    pub direction: [f32; 3],
+    /// Place of the sphere that was hit, [`NO_SPHERE`] or [`UNFINISHED`].
+    pub sphere: u32,
+    /// Where it was hit.
+    pub position: [f32; 3],
+    /// Length of the segment.
+    pub distance: f32,
+    /// Unit normal on the side that the ray came from.
+    pub normal: [f32; 3],
+    /// Place of the light that was sampled, or [`NO_SPHERE`].
+    pub light: u32,
+    /// Product of the weights, that of the scattering at the segment's end included.
+    pub throughput: [f32; 3],
+    /// 1 where nothing stands before the light.
+    pub visible: u32,
+    /// Radiance that the path brought so far.
+    pub radiance: [f32; 3],
+    /// 1 where the path does not end here.
+    pub goes_on: u32,
+    /// Radiance of the whole sample.
+    pub sample: [f32; 3],
+    /// 1 if no loop was cut short.
+    pub finished: u32,
+}
