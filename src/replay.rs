@@ -70,7 +70,8 @@ fn at_vertex(ours: &Segment, theirs: &Segment, viewpoint: &Viewpoint) -> Option<
         (None, None) => {}
         (Some(a), Some(b)) if a.sphere == b.sphere => {
             let size = viewpoint.extent().max(b.position.distance(viewpoint.focus()));
-            if !(a.position.distance(b.position) <= TOLERANCE * size) {
+            let is_near = a.position.distance(b.position) <= TOLERANCE * size;
+            if !is_near {
                 return Some(Cause::Position);
             }
             if are_apart(a.normal, b.normal) {
@@ -103,8 +104,9 @@ fn onwards(device: &Trail, twin: &Trail, i: usize) -> Option<Cause> {
     }
 }
 
-/// Whether two values differ by more than the tolerance, or one is not a number.
+/// Whether two values differ by more than the tolerance, or one is not finite.
 fn are_apart(a: DVec3, b: DVec3) -> bool {
     let size = a.abs().max_element().max(b.abs().max_element());
-    !((a - b).abs().max_element() <= TOLERANCE * size) || a.is_nan() || b.is_nan()
+    let is_near = (a - b).abs().max_element() <= TOLERANCE * size;
+    !(a.is_finite() && b.is_finite() && is_near)
 }

@@ -47,8 +47,8 @@ macro_rules! mirror {
     }};
 }
 
-fn mirrors() -> [Layout; 4] {
-    [
+fn mirrors() -> Vec<Layout> {
+    vec![
         mirror!(Sphere { position, size, color, exponent, offset, index, kind, inside }),
         mirror!(Scene {
             origin,
@@ -75,6 +75,29 @@ fn mirrors() -> [Layout; 4] {
             row_end
         }),
         mirror!(Ledger { count, records }),
+    ]
+}
+
+/// Those that only the replay has.
+fn replay_mirrors() -> [Layout; 2] {
+    [
+        mirror!(Request { pixel, index_low, index_high }),
+        mirror!(Replay {
+            origin,
+            reached,
+            direction,
+            sphere,
+            position,
+            distance,
+            normal,
+            light,
+            throughput,
+            visible,
+            radiance,
+            goes_on,
+            sample,
+            finished
+        }),
     ]
 }
 
@@ -110,16 +133,19 @@ fn constant(module: &naga::Module, name: &str) -> Option<u32> {
 }
 
 fn general_kernel() -> String {
+    general().wgsl()
+}
+
+fn general() -> Kernel {
     let size = ImageSize::new(8, 8).expect("a size");
-    let kernel = Kernel {
+    Kernel {
         size,
         bounces: 2,
         estimator: Estimator::Mis,
         effects: Effects::ALL,
         nearest: Nearest::Loop,
         lights: Lights::Many { huge: true },
-    };
-    kernel.wgsl()
+    }
 }
 
 #[test]
@@ -128,6 +154,17 @@ fn mirrors_have_nagas_layout() {
     for mirror in mirrors() {
         compare(&module, &mirror).expect("the same layout");
     }
+    let replay = general().replay_wgsl();
+    let (module, _) = validate(&replay).expect("a valid kernel");
+    for mirror in replay_mirrors() {
+        compare(&module, &mirror).expect("the same layout");
+    }
+    assert_eq!(constant(&module, "UNFINISHED"), Some(layout::UNFINISHED));
+    let (from, to) =
+        ("visible: u32,\n    radiance: vec3<f32>,", "radiance: vec3<f32>,\n    visible: u32,");
+    assert_eq!(replay.matches(from).count(), 1);
+    let module = naga::front::wgsl::parse_str(&replay.replace(from, to)).expect("it parses");
+    compare(&module, &replay_mirrors()[1]).expect_err(from);
 }
 
 #[test]
@@ -249,8 +286,10 @@ fn every_composition_is_valid() {
                 turn += 1;
                 let bounces = flags * 9;
                 let kernel = Kernel { size, bounces, estimator, effects, nearest, lights };
-                if let Err(message) = validate(&kernel.wgsl()) {
-                    panic!("{kernel:?}: {message}");
+                for text in [kernel.wgsl(), kernel.replay_wgsl()] {
+                    if let Err(message) = validate(&text) {
+                        panic!("{kernel:?}: {message}");
+                    }
                 }
             }
         }

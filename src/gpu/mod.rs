@@ -8,5 +8,5 @@ mod replay;
 mod tracer;
 
 pub use device::{Adapter, Gpu, adapters};
-pub use replay::{replay, replay_with_kernel};
+pub use replay::Replayer;
 pub use tracer::GpuTracer;

@@ -4,7 +4,7 @@ use super::bands::read_buffer;
 use super::device::Gpu;
 use super::tracer::{bind, buffer, check_iterations, pipeline};
 use crate::bound::sample_scale;
-use crate::kernel::{self, Kernel, KernelUnits, Packed, layout};
+use crate::kernel::{self, Kernel, KernelUnits, layout};
 use crate::scene::Scene;
 use crate::tracer::TraceError;
 use crate::trail::{Connection, Ending, Segment, Trail, Vertex};
@@ -12,76 +12,49 @@ use crate::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
 use wgpu::util::DeviceExt;
 
-/// The path of the sample `index` of a pixel (its number, row by row from the top), traced with
-/// the text of the kernel that renders the scene.
-///
-/// # Errors
-/// If the device fails or does not fit the scene.
-pub fn replay(scene: &Scene, gpu: &Gpu, pixel: u32, index: u64) -> Result<Trail, TraceError> {
-    let viewpoint = Viewpoint::of(scene);
-    let packed = kernel::pack(scene, &viewpoint, sample_scale(scene))
-        .map_err(|error| TraceError::Device(error.to_string()))?;
-    let kernel = Kernel::of(scene, &viewpoint, &packed);
-    check_iterations(scene, &packed)?;
-    replay_with_kernel(scene, gpu, &packed, &kernel.replay_wgsl(), pixel, index)
-}
-
-/// The same with a packed scene and the text of a kernel; the tests use it to replay kernels
-/// that are wrong on purpose.
-///
-/// # Errors
-/// If the device fails or does not take the kernel.
-pub fn replay_with_kernel(
-    scene: &Scene,
-    gpu: &Gpu,
-    packed: &Packed,
-    wgsl: &str,
-    pixel: u32,
-    index: u64,
-) -> Result<Trail, TraceError> {
-    let recorder = Recorder::new(gpu, &packed.scene, wgsl)?;
-    let back = BackToScene::new(scene, packed);
-    let mut segments = Vec::new();
-    for bounce in 0..=scene.settings().bounces() {
-        let record = recorder.record(pixel, index, bounce)?;
-        if record.reached == 0 {
-            break;
-        }
-        let segment = back.segment(&record, bounce);
-        segments.push(segment);
-        let surface = segment.vertex.map(|vertex| scene.spheres()[vertex.sphere].surface());
-        let ending = if record.finished == 0 || record.sphere == layout::UNFINISHED {
-            Ending::Unfinished
-        } else {
-            let settings = scene.settings();
-            Ending::at(surface, bounce, settings.bounces(), settings.estimator())
-        };
-        if record.goes_on == 0 {
-            return Ok(Trail::ended(segments, ending, record.sample));
-        }
-    }
-    // The path was still under way when the kernel's segments were over.
-    let sample = recorder.record(pixel, index, layout::NO_SPHERE)?.sample;
-    Ok(Trail::ended(segments, Ending::Unfinished, sample))
-}
-
-/// The replay kernel on a device.
-struct Recorder<'gpu> {
-    gpu: &'gpu Gpu,
+/// A scene on a device, ready to trace single samples again.
+#[derive(Debug)]
+pub struct Replayer<'a> {
+    scene: &'a Scene,
+    gpu: &'a Gpu,
     pipeline: wgpu::ComputePipeline,
     request: wgpu::Buffer,
     replayed: wgpu::Buffer,
     group: wgpu::BindGroup,
+    back: BackToScene,
 }
 
-impl<'gpu> Recorder<'gpu> {
-    fn new(gpu: &'gpu Gpu, scene: &layout::Scene, wgsl: &str) -> Result<Self, TraceError> {
+impl<'a> Replayer<'a> {
+    /// Takes the scene to the device, with the text of the kernel that renders it.
+    ///
+    /// # Errors
+    /// If the scene does not fit the device.
+    pub fn new(scene: &'a Scene, gpu: &'a Gpu) -> Result<Self, TraceError> {
+        let viewpoint = Viewpoint::of(scene);
+        let packed = kernel::pack(scene, &viewpoint, sample_scale(scene))
+            .map_err(|error| TraceError::Device(error.to_string()))?;
+        let kernel = Kernel::of(scene, &viewpoint, &packed);
+        check_iterations(scene, &packed)?;
+        Self::with_kernel(scene, gpu, &packed.scene, &kernel.replay_wgsl())
+    }
+
+    /// The same with a packed scene and the text of a kernel; the tests use it to replay
+    /// kernels that are wrong on purpose.
+    ///
+    /// # Errors
+    /// If the device does not take the kernel.
+    pub fn with_kernel(
+        scene: &'a Scene,
+        gpu: &'a Gpu,
+        packed: &layout::Scene,
+        wgsl: &str,
+    ) -> Result<Self, TraceError> {
         let device = gpu.device();
         let pipeline = pipeline(device, wgsl, "replay");
         gpu.check()?;
-        let scene = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("scene"),
-            contents: bytemuck::bytes_of(scene),
+            contents: bytemuck::bytes_of(packed),
             usage: wgpu::BufferUsages::UNIFORM,
         });
         let request = buffer::<layout::Request>(
@@ -89,28 +62,56 @@ impl<'gpu> Recorder<'gpu> {
             "request",
             wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
         );
-        let replayed = buffer::<layout::Replay>(
-            device,
-            "replayed",
-            wgpu::BufferUsages::STORAGE
+        let segments = u64::from(scene.settings().bounces()) + 1;
+        let replayed = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("replayed"),
+            size: segments * size_of::<layout::Replay>() as u64,
+            usage: wgpu::BufferUsages::STORAGE
                 | wgpu::BufferUsages::COPY_SRC
                 | wgpu::BufferUsages::COPY_DST,
-        );
+            mapped_at_creation: false,
+        });
         let layout = pipeline.get_bind_group_layout(0);
-        let group = bind(device, &layout, &[&scene, &request, &replayed]);
+        let group = bind(device, &layout, &[&uniform, &request, &replayed]);
         gpu.check()?;
-        Ok(Self { gpu, pipeline, request, replayed, group })
+        let back = BackToScene::new(scene, packed);
+        Ok(Self { scene, gpu, pipeline, request, replayed, group, back })
     }
 
-    /// Traces the sample once and records one segment; zeros where the path does not reach it.
-    fn record(&self, pixel: u32, index: u64, segment: u32) -> Result<layout::Replay, TraceError> {
+    /// The path of the sample `index` of a pixel, which is numbered row by row from the top.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn replay(&self, pixel: u32, index: u64) -> Result<Trail, TraceError> {
+        let records = self.record(pixel, index)?;
+        let mut segments = Vec::new();
+        for (bounce, record) in (0..).zip(records.iter().filter(|record| record.reached == 1)) {
+            let segment = self.back.segment(record, bounce);
+            segments.push(segment);
+            if record.goes_on == 0 {
+                let ending = self.ending(record, segment.vertex, bounce);
+                return Ok(Trail::ended(segments, ending, record.sample));
+            }
+        }
+        // The kernel had no more segments for a path that was still under way.
+        let sample = records.first().map_or([0.0; 3], |record| record.sample);
+        Ok(Trail::ended(segments, Ending::Unfinished, sample))
+    }
+
+    fn ending(&self, record: &layout::Replay, last: Option<Vertex>, bounce: u32) -> Ending {
+        if record.finished == 0 || record.sphere == layout::UNFINISHED {
+            return Ending::Unfinished;
+        }
+        let surface = last.map(|vertex| self.scene.spheres()[vertex.sphere].surface());
+        let settings = self.scene.settings();
+        Ending::at(surface, bounce, settings.bounces(), settings.estimator())
+    }
+
+    /// Records every segment that a path can have; zeros where this one has none.
+    fn record(&self, pixel: u32, index: u64) -> Result<Vec<layout::Replay>, TraceError> {
         #[expect(clippy::cast_possible_truncation, reason = "takes the two words apart")]
-        let request = layout::Request {
-            pixel,
-            index_low: index as u32,
-            index_high: (index >> 32) as u32,
-            segment,
-        };
+        let request =
+            layout::Request { pixel, index_low: index as u32, index_high: (index >> 32) as u32 };
         self.gpu.queue().write_buffer(&self.request, 0, bytemuck::bytes_of(&request));
         let mut encoder =
             self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -119,16 +120,18 @@ impl<'gpu> Recorder<'gpu> {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &self.group, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
+            pass.dispatch_workgroups(self.scene.settings().bounces() + 1, 1, 1);
         }
         self.gpu.run(encoder)?;
-        Ok(bytemuck::pod_read_unaligned(&read_buffer(self.gpu, &self.replayed)?))
+        Ok(bytemuck::pod_collect_to_vec(&read_buffer(self.gpu, &self.replayed)?))
     }
 }
 
 /// The way from kernel units back to the scene's, in `f64`.
-struct BackToScene<'a> {
-    packed: &'a layout::Scene,
+#[derive(Debug)]
+struct BackToScene {
+    /// Places among the scene's spheres, in the order of the uniform buffer.
+    spheres: Vec<usize>,
     /// The camera, where the kernel starts its rays before the scene instead.
     far_camera: Option<DVec3>,
     /// Kernel units per scene unit.
@@ -137,12 +140,15 @@ struct BackToScene<'a> {
     origin: DVec3,
 }
 
-impl<'a> BackToScene<'a> {
-    fn new(scene: &Scene, packed: &'a Packed) -> Self {
+impl BackToScene {
+    fn new(scene: &Scene, packed: &layout::Scene) -> Self {
         let viewpoint = Viewpoint::of(scene);
         let units = KernelUnits::of(&viewpoint);
         Self {
-            packed: &packed.scene,
+            spheres: packed.spheres[..packed.sphere_count as usize]
+                .iter()
+                .map(|sphere| sphere.index as usize)
+                .collect(),
             far_camera: (viewpoint.approach() > 0.0).then(|| scene.camera().position()),
             scale: units.length(1.0),
             origin: units.point(DVec3::ZERO),
@@ -159,7 +165,7 @@ impl<'a> BackToScene<'a> {
         let direction = Vec3::from(record.direction).as_dvec3();
         let start = self.point(record.origin);
         let (origin, skipped) = match self.far_camera {
-            Some(camera) if bounce == 0 => (camera, (start - camera).dot(direction)),
+            Some(camera) if bounce == 0 => (camera, start.distance(camera)),
             _ => (start, 0.0),
         };
         Segment {
@@ -181,7 +187,6 @@ impl<'a> BackToScene<'a> {
 
     /// A place in the uniform buffer among the scene's spheres.
     fn place(&self, place: u32) -> Option<usize> {
-        let sphere = self.packed.spheres[..self.packed.sphere_count as usize].get(place as usize);
-        sphere.map(|sphere| sphere.index as usize)
+        self.spheres.get(place as usize).copied()
     }
 }

@@ -287,7 +287,11 @@ pub(super) fn pipeline(device: &wgpu::Device, wgsl: &str, entry: &str) -> wgpu::
     })
 }
 
-pub(super) fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(super) fn buffer<T>(
+    device: &wgpu::Device,
+    label: &str,
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size_of::<T>() as u64,

@@ -70,27 +70,32 @@ impl Nearest {
 /// (BENCHMARKS.md, "Speed of the classic scene").
 const UNROLLED_BOUNCES: u32 = 4;
 
-/// The function that follows a path from segment to segment, each by calling `advance`, the
-/// name of a function.
-fn follow(bounces: u32, advance: &str) -> String {
-    let segments: String = if bounces > UNROLLED_BOUNCES {
-        let step = format!("        goes_on = {advance}(&path, key, bounce);\n");
-        format!(
-            "    for (var bounce = 0u; bounce <= BOUNCES && goes_on; bounce++) {{\n{step}    }}\n"
-        )
-    } else {
-        let step = |bounce| {
-            format!(
-                "    if goes_on {{\n        goes_on = {advance}(&path, key, {bounce}u);\n    }}\n"
-            )
-        };
-        (0..=bounces).map(step).collect()
+/// The statements that take a path from segment to segment.
+fn steps(bounces: u32) -> String {
+    if bounces > UNROLLED_BOUNCES {
+        return looped("advance");
+    }
+    let step = |bounce| {
+        format!("    if goes_on {{\n        goes_on = advance(&path, key, {bounce}u);\n    }}\n")
     };
+    (0..=bounces).map(step).collect()
+}
+
+/// The same as a loop, with any function that advances a path.
+fn looped(advance: &str) -> String {
+    format!(
+        "    for (var bounce = 0u; bounce <= BOUNCES && goes_on; bounce++) {{\n        \
+         goes_on = {advance}(&path, key, bounce);\n    }}\n"
+    )
+}
+
+/// The function that follows a path, taking these steps.
+fn follow(steps: &str) -> String {
     format!(
         "// One path: from the camera to a light, to nowhere, or to its last bounce.\n\
          fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {{\n    load_shapes();\n    \
          var path = start(camera_ray(pixel, unit_floats(random_bits(key, 0u))));\n    \
-         var goes_on = true;\n{segments}    \
+         var goes_on = true;\n{steps}    \
          return Sample(path.radiance, path.finished);\n}}\n"
     )
 }
@@ -177,18 +182,19 @@ impl Kernel {
              const TILE_SAMPLES: u32 = {samples}u;\n"
         );
         let mut parts = self.path();
-        parts.push(follow(self.bounces, "advance"));
+        parts.push(follow(&steps(self.bounces)));
         let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
         parts.extend(last.map(str::to_owned));
         parts.join("\n")
     }
 
     /// The WGSL of the entry point `replay`, which traces one sample with the text that
-    /// `render` traces it with, and records one segment of its path.
+    /// `render` traces it with, and records its path. Bounces are always a loop: written out,
+    /// recording among several lights takes lavapipe's compiler minutes.
     #[must_use]
     pub fn replay_wgsl(&self) -> String {
         let mut parts = self.path();
-        parts.push(follow(self.bounces, "observe"));
+        parts.push(follow(&looped("observe")));
         let connection = if self.samples_lights() {
             fragment!("replay_connected")
         } else {

@@ -114,8 +114,6 @@ pub struct Request {
     pub index_low: u32,
     /// High word of the sample index.
     pub index_high: u32,
-    /// The segment to record; that from the camera is 0.
-    pub segment: u32,
 }
 
 /// In place of a sphere: a driver cut the search short.
