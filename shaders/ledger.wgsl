@@ -3,11 +3,9 @@
 
 const LEDGER_RECORDS: u32 = 16u;
 
-const REASON_UNFINISHED: u32 = 1u;
-const REASON_OUT_OF_BOUNDS: u32 = 2u;
-
-// A record: pixel, low and high word of the sample index, reason.
-const RECORD_WORDS: u32 = 4u;
+// A record: pixel, low and high word of the sample index, whether it was finished, bit
+// patterns of its radiance, and a word that is 0. The host reads the reason from the bits.
+const RECORD_WORDS: u32 = 8u;
 
 struct Ledger {
     count: atomic<u32>,
@@ -25,10 +23,11 @@ fn exceeds_bound(radiance: vec3<f32>) -> bool {
 
 // The loop is for the samples that are valid: a group of invocations without invalid
 // ones leaves it at once, where straight-line stores would all be gone through.
-fn record_invalid(key: SampleKey, reason: u32) {
+fn record_invalid(key: SampleKey, sample: Sample) {
     let slot = atomicAdd(&ledger.count, 1u);
-    let record = vec4<u32>(key.pixel, key.index_low, key.index_high, reason);
+    let address = vec4<u32>(key.pixel, key.index_low, key.index_high, u32(sample.finished));
+    let radiance = vec4<u32>(bitcast<vec3<u32>>(sample.radiance), 0u);
     for (var i = 0u; i < RECORD_WORDS && slot < LEDGER_RECORDS; i++) {
-        ledger.records[slot * RECORD_WORDS + i] = record[i];
+        ledger.records[slot * RECORD_WORDS + i] = select(address, radiance, i >= 4u)[i & 3u];
     }
 }

@@ -13,7 +13,7 @@ fn render(@builtin(global_invocation_id) id: vec3<u32>) {
     let key = SampleKey(pixel.y * WIDTH + pixel.x, low, high);
     let sample = trace(pixel, key);
     if !sample.finished || exceeds_bound(sample.radiance) {
-        record_invalid(key, select(REASON_OUT_OF_BOUNDS, REASON_UNFINISHED, !sample.finished));
+        record_invalid(key, sample);
         return;
     }
     if all(sample.radiance == vec3<f32>(0.0)) {

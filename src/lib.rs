@@ -2,9 +2,9 @@
 //!
 //! Data flows one way, and no module knows what stands to its right:
 //!
-//! [`scene`] → [`viewpoint`], [`effects`], [`bound`], [`range`] → [`film`] → [`kernel`] → [`gpu`] or
-//! [`cpu`] (both a [`tracer`]) → [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`] →
-//! [`report`] → [`cli`]
+//! [`scene`] → [`viewpoint`], [`effects`], [`bound`], [`range`] → [`film`] → [`tracer`],
+//! [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) → [`estimate`] → [`pilot`],
+//! [`render`], [`verify`], [`cost`], [`replay`] → [`report`] → [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and
@@ -22,10 +22,12 @@ pub mod kernel;
 pub mod pilot;
 pub mod range;
 pub mod render;
+pub mod replay;
 pub mod report;
 pub mod scene;
 pub mod sweep;
 pub mod tracer;
+pub mod trail;
 mod units;
 pub mod verify;
 pub mod viewpoint;

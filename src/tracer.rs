@@ -16,15 +16,68 @@ pub struct Description {
 }
 
 /// Why a sample did not enter the film.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum InvalidReason {
     /// A loop of the kernel was cut short by the driver.
     Unfinished,
-    /// NaN, infinite, negative, or above the proven bound on one sample.
-    OutOfBounds,
+    /// A channel is not a number.
+    NotANumber,
+    /// A channel is infinite, of either sign.
+    Infinite,
+    /// A channel is negative; −0 is.
+    Negative,
+    /// A channel is above the proven bound on one sample ([`crate::bound`]).
+    AboveBound,
 }
 
-/// The address of an invalid sample.
+impl InvalidReason {
+    /// What is wrong with the radiance of a finished sample, the first reason of this list that
+    /// holds for any channel; `None` if all are from 0 to `bound`. It looks at bit patterns, as
+    /// the device does: no compiler may assume NaN away.
+    #[must_use]
+    pub fn of(radiance: [f32; 3], bound: f32) -> Option<Self> {
+        const INFINITY: u32 = f32::INFINITY.to_bits();
+        const SIGN: u32 = 1 << 31;
+        let bits = radiance.map(f32::to_bits);
+        let any = |holds: fn(u32) -> bool| bits.into_iter().any(holds);
+        if any(|bits| bits & !SIGN > INFINITY) {
+            Some(Self::NotANumber)
+        } else if any(|bits| bits & !SIGN == INFINITY) {
+            Some(Self::Infinite)
+        } else if any(|bits| bits & SIGN != 0) {
+            Some(Self::Negative)
+        } else {
+            bits.into_iter().any(|bits| bits > bound.to_bits()).then_some(Self::AboveBound)
+        }
+    }
+
+    /// One word, for files and `--json`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Unfinished => "unfinished",
+            Self::NotANumber => "nan",
+            Self::Infinite => "infinite",
+            Self::Negative => "negative",
+            Self::AboveBound => "above-bound",
+        }
+    }
+}
+
+/// For people.
+impl std::fmt::Display for InvalidReason {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Unfinished => "the driver cut a loop short",
+            Self::NotANumber => "NaN",
+            Self::Infinite => "infinite",
+            Self::Negative => "negative",
+            Self::AboveBound => "above the bound on one sample",
+        })
+    }
+}
+
+/// The address of an invalid sample, and what was wrong with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InvalidSample {
     /// Pixel number, row by row from the top.
@@ -35,13 +88,27 @@ pub struct InvalidSample {
     pub reason: InvalidReason,
 }
 
+/// Invalid samples that a ledger records.
+pub const LEDGER_RECORDS: usize = 16;
+
 /// Invalid samples: how many, and the first few of them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ledger {
     /// How many samples were invalid; they add 0 to the film and count in N.
     pub count: u64,
-    /// The first recorded ones.
+    /// Those met first, at most [`LEDGER_RECORDS`], in the order of (pixel, index). Where there
+    /// are more, which of them were met first is left to chance on a device.
     pub records: Vec<InvalidSample>,
+}
+
+impl Ledger {
+    /// Adds what was met later. The records that were there stay.
+    pub fn append(&mut self, later: Self) {
+        self.count += later.count;
+        let room = LEDGER_RECORDS.saturating_sub(self.records.len());
+        self.records.extend(later.records.into_iter().take(room));
+        self.records.sort_unstable_by_key(|record| (record.pixel, record.index));
+    }
 }
 
 /// Why a tracer gave up.

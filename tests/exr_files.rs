@@ -3,7 +3,7 @@
 use candor::film::{SampleRanges, SampleScale};
 use candor::report::{Picture, PictureHeader, Provenance, StoredPicture, write_exr};
 use candor::scene::ImageSize;
-use candor::tracer::Description;
+use candor::tracer::{Description, Ledger};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
     LayerAttributes, LineOrder, Vec2, WritableImage, f16,
@@ -51,7 +51,7 @@ fn ours(folder: &TempDir) -> PathBuf {
         scale: SampleScale::from_bound(64.0),
         tracer,
         seconds: 1.0,
-        invalid_samples: 0,
+        ledger: Ledger::default(),
         unproven_pixels: 1,
         coarse_pixels: 0,
         relative_error: Some(0.1),

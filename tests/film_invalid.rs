@@ -56,21 +56,23 @@ fn invalid_samples_are_recorded_and_add_nothing() {
     let (without, ledger) = traced(&poisoned("sample.radiance = vec3<f32>(0.0);"), 12);
     assert_eq!(ledger.count, 0);
     let values = [
-        ("NaN", f32::NAN),
-        ("a signalling NaN", f32::from_bits(0x7f80_0001)),
-        ("infinity", f32::INFINITY),
-        ("minus infinity", f32::NEG_INFINITY),
-        ("a negative number", -1e-30),
-        ("more than the bound", bound.next_up()),
+        ("NaN", f32::NAN, InvalidReason::NotANumber),
+        ("a NaN with its sign", -f32::NAN, InvalidReason::NotANumber),
+        ("a signalling NaN", f32::from_bits(0x7f80_0001), InvalidReason::NotANumber),
+        ("infinity", f32::INFINITY, InvalidReason::Infinite),
+        ("minus infinity", f32::NEG_INFINITY, InvalidReason::Infinite),
+        ("a negative number", -1e-30, InvalidReason::Negative),
+        ("minus zero", -0.0, InvalidReason::Negative),
+        ("more than the bound", bound.next_up(), InvalidReason::AboveBound),
+        ("the largest number", f32::MAX, InvalidReason::AboveBound),
     ];
     let expected = addresses(12);
-    for (name, value) in values {
+    for (name, value, reason) in values {
         let (film, ledger) = traced(&bits(value.to_bits()), 12);
         assert_eq!(ledger.count, expected.len() as u64, "{name}");
-        let mut found: Vec<_> = ledger.records.iter().map(|r| (r.pixel, r.index)).collect();
-        found.sort_unstable();
+        let found: Vec<_> = ledger.records.iter().map(|r| (r.pixel, r.index)).collect();
         assert_eq!(found, expected, "{name}");
-        assert!(ledger.records.iter().all(|r| r.reason == InvalidReason::OutOfBounds), "{name}");
+        assert!(ledger.records.iter().all(|r| r.reason == reason), "{name}: {ledger:?}");
         assert!(film == without, "{name} left something in the film");
         assert_eq!(film.samples().count(), 12, "{name}");
     }
@@ -89,6 +91,40 @@ fn the_ledger_counts_beyond_its_records() {
     for record in ledger.records {
         assert!(expected.contains(&(record.pixel, record.index)), "{record:?}");
     }
+}
+
+/// Reading the ledger between the samples neither loses nor repeats anything, and the records
+/// that were there stay.
+#[test]
+fn a_ledger_that_is_read_goes_on() {
+    let mut tracer = mutant(&scene(), SAMPLE, &poisoned("sample.radiance.x = -1.0;"));
+    let mut counts = Vec::new();
+    let mut records = Vec::new();
+    for part in 0..8 {
+        let first = FIRST + 8 * part;
+        let (_, ledger) = trace(&mut tracer, &[first..first + 8]);
+        counts.push(ledger.count);
+        records.push(ledger.records);
+    }
+    let expected: Vec<u64> = (1..=8).map(|part| addresses(8 * part).len() as u64).collect();
+    assert_eq!(counts, expected);
+    let early = addresses(16);
+    assert!(early.len() == 12 && records.last().map(Vec::len) == Some(16), "{records:?}");
+    for record in records.iter().skip(1).map(|r| r.iter().map(|r| (r.pixel, r.index))) {
+        let found: Vec<_> = record.collect();
+        assert!(early.iter().all(|address| found.contains(address)), "{found:?}");
+    }
+}
+
+/// A sample is what is wrong with any channel; what is worst is said first.
+#[test]
+fn reasons_go_by_the_worst_channel() {
+    let of = |r, g, b| InvalidReason::of([r, g, b], 2.0);
+    assert_eq!(of(0.0, 2.0, 1.0), None);
+    assert_eq!(of(0.0, 2.0_f32.next_up(), 0.0), Some(InvalidReason::AboveBound));
+    assert_eq!(of(9.0, 0.0, -0.0), Some(InvalidReason::Negative));
+    assert_eq!(of(9.0, -1.0, f32::INFINITY), Some(InvalidReason::Infinite));
+    assert_eq!(of(f32::NEG_INFINITY, -1.0, -f32::NAN), Some(InvalidReason::NotANumber));
 }
 
 /// A kernel that does not look for invalid samples is told by the ledger alone.

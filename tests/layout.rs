@@ -12,6 +12,7 @@ use candor::kernel::{
     Form, Kernel, Lights, Nearest, SPHERE_CAPACITY, Tile, layout, probe_source, validate,
 };
 use candor::scene::{Estimator, ImageSize};
+use candor::tracer::LEDGER_RECORDS;
 use std::mem::offset_of;
 
 /// One struct as somebody lays it out.
@@ -46,8 +47,8 @@ macro_rules! mirror {
     }};
 }
 
-fn mirrors() -> [Layout; 4] {
-    [
+fn mirrors() -> Vec<Layout> {
+    vec![
         mirror!(Sphere { position, size, color, exponent, offset, index, kind, inside }),
         mirror!(Scene {
             origin,
@@ -74,6 +75,29 @@ fn mirrors() -> [Layout; 4] {
             row_end
         }),
         mirror!(Ledger { count, records }),
+    ]
+}
+
+/// Those that only the replay has.
+fn replay_mirrors() -> [Layout; 2] {
+    [
+        mirror!(Request { pixel, index_low, index_high }),
+        mirror!(Replay {
+            origin,
+            reached,
+            direction,
+            sphere,
+            position,
+            distance,
+            normal,
+            light,
+            throughput,
+            visible,
+            radiance,
+            goes_on,
+            sample,
+            finished
+        }),
     ]
 }
 
@@ -109,16 +133,19 @@ fn constant(module: &naga::Module, name: &str) -> Option<u32> {
 }
 
 fn general_kernel() -> String {
+    general().wgsl()
+}
+
+fn general() -> Kernel {
     let size = ImageSize::new(8, 8).expect("a size");
-    let kernel = Kernel {
+    Kernel {
         size,
         bounces: 2,
         estimator: Estimator::Mis,
         effects: Effects::ALL,
         nearest: Nearest::Loop,
         lights: Lights::Many { huge: true },
-    };
-    kernel.wgsl()
+    }
 }
 
 #[test]
@@ -127,6 +154,17 @@ fn mirrors_have_nagas_layout() {
     for mirror in mirrors() {
         compare(&module, &mirror).expect("the same layout");
     }
+    let replay = general().replay_wgsl();
+    let (module, _) = validate(&replay).expect("a valid kernel");
+    for mirror in replay_mirrors() {
+        compare(&module, &mirror).expect("the same layout");
+    }
+    assert_eq!(constant(&module, "UNFINISHED"), Some(layout::UNFINISHED));
+    let (from, to) =
+        ("visible: u32,\n    radiance: vec3<f32>,", "radiance: vec3<f32>,\n    visible: u32,");
+    assert_eq!(replay.matches(from).count(), 1);
+    let module = naga::front::wgsl::parse_str(&replay.replace(from, to)).expect("it parses");
+    compare(&module, &replay_mirrors()[1]).expect_err(from);
 }
 
 #[test]
@@ -137,7 +175,7 @@ fn a_wrong_layout_is_rejected() {
         ("Scene", "lights: array<vec4<u32>, LIGHT_VECTORS>", "lights: array<vec4<u32>, 127u>"),
         ("Scene", "origin: vec3<f32>,\n    seed: u32,", "seed: u32,\n    origin: vec3<f32>,"),
         ("Dispatch", "row_start: u32,\n    row_end: u32,", "row_end: u32,\n    row_start: u32,"),
-        ("Ledger", "array<u32, LEDGER_RECORDS * RECORD_WORDS>", "array<u32, 65>"),
+        ("Ledger", "array<u32, LEDGER_RECORDS * RECORD_WORDS>", "array<u32, 129>"),
     ];
     let kernel = general_kernel();
     for (name, from, to) in faults {
@@ -153,14 +191,13 @@ fn constants_are_the_kernels() {
     let (module, _) = validate(&general_kernel()).expect("a valid kernel");
     let constants = [
         ("SPHERE_CAPACITY", u32::try_from(SPHERE_CAPACITY).expect("a small number")),
-        ("LEDGER_RECORDS", u32::try_from(layout::LEDGER_RECORDS).expect("a small number")),
+        ("LEDGER_RECORDS", u32::try_from(LEDGER_RECORDS).expect("a small number")),
+        ("RECORD_WORDS", u32::try_from(layout::RECORD_WORDS).expect("a small number")),
         ("FILM_WORDS", u32::try_from(candor::film::WORDS).expect("a small number")),
         ("NO_SPHERE", layout::NO_SPHERE),
         ("KIND_EMITTER", layout::KIND_EMITTER),
         ("KIND_DIFFUSE", layout::KIND_DIFFUSE),
         ("KIND_GLOSSY", layout::KIND_GLOSSY),
-        ("REASON_UNFINISHED", layout::REASON_UNFINISHED),
-        ("REASON_OUT_OF_BOUNDS", layout::REASON_OUT_OF_BOUNDS),
     ];
     for (name, value) in constants {
         assert_eq!(constant(&module, name), Some(value), "{name}");
@@ -249,8 +286,10 @@ fn every_composition_is_valid() {
                 turn += 1;
                 let bounces = flags * 9;
                 let kernel = Kernel { size, bounces, estimator, effects, nearest, lights };
-                if let Err(message) = validate(&kernel.wgsl()) {
-                    panic!("{kernel:?}: {message}");
+                for text in [kernel.wgsl(), kernel.replay_wgsl()] {
+                    if let Err(message) = validate(&text) {
+                        panic!("{kernel:?}: {message}");
+                    }
                 }
             }
         }

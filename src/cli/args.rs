@@ -1,7 +1,7 @@
 //! Arguments, as typed.
 
 use crate::cost::Plan;
-use crate::film::SampleRanges;
+use crate::film::{MAX_SAMPLE_INDEX, SampleRanges};
 use crate::scene::{Estimator, ImageSize, Invalid, MAX_SPP};
 use clap::{Args, Parser, Subcommand};
 use std::num::NonZeroUsize;
@@ -38,6 +38,10 @@ pub(super) enum Command {
     /// (cost.svg, cost.png) and a report to read (cost.html).
     #[command(allow_negative_numbers = true)]
     Cost(CostArgs),
+    /// Traces one sample of one pixel again, on the device and on the CPU twin, and shows both
+    /// paths vertex by vertex; exits 0 whatever it finds.
+    #[command(allow_negative_numbers = true)]
+    Replay(ReplayArgs),
     /// Lists what can render here.
     Devices,
 }
@@ -48,6 +52,7 @@ impl Command {
             Self::Render(args) => args.common.threads,
             Self::Verify(args) => args.common.threads,
             Self::Cost(args) => args.common.threads,
+            Self::Replay(args) => args.common.threads,
             Self::Diff(_) | Self::Devices => None,
         }
     }
@@ -117,6 +122,9 @@ pub(super) struct RenderArgs {
     /// Log samples, seconds and error to this CSV file as the render goes.
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,
+    /// Exit with code 1 if any sample was invalid; the pictures are written all the same.
+    #[arg(long)]
+    pub strict: bool,
     /// Brightens the PNG by this many stops.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0,
           value_parser = parse_exposure)]
@@ -139,6 +147,23 @@ pub(super) struct VerifyArgs {
     pub common: CommonArgs,
     #[command(flatten)]
     pub sampling: SamplingArgs,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReplayArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub common: CommonArgs,
+    /// Estimator: implicit, cosine, explicit or mis; default: the scene's, or implicit.
+    #[arg(long, value_name = "E", value_parser = parse_estimator)]
+    pub estimator: Option<EstimatorChoice>,
+    /// Pixel: its column and row, counted from 0 at the top left.
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    pub pixel: (u32, u32),
+    /// Index of the sample, below 2^56.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(..MAX_SAMPLE_INDEX))]
+    pub sample: u64,
 }
 
 #[derive(Debug, Args)]
@@ -212,6 +237,11 @@ fn parse_size(text: &str) -> Result<ImageSize, String> {
     let (width, height) =
         sides.ok_or("expected WIDTHxHEIGHT in pixels, such as 640x480".to_owned())?;
     ImageSize::new(width, height).map_err(|error| format!("each side must be {error}"))
+}
+
+fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(',').and_then(|(x, y)| Some((x.parse().ok()?, y.parse().ok()?)));
+    sides.ok_or("expected COLUMN,ROW in whole numbers, such as 12,34".to_owned())
 }
 
 fn parse_samples(text: &str) -> Result<Range<u64>, String> {

@@ -229,7 +229,8 @@ impl Findings {
     }
 }
 
-/// Where the two headers say that other pictures are compared than the user may think.
+/// Where the two headers say that other pictures are compared than the user may think, or
+/// pictures that their error bars do not cover.
 fn unlike(a: &PictureHeader, b: &PictureHeader) -> Vec<String> {
     let mut warnings = Vec::new();
     if let (Some(ours), Some(theirs)) = (&a.scene_hash, &b.scene_hash)
@@ -241,6 +242,15 @@ fn unlike(a: &PictureHeader, b: &PictureHeader) -> Vec<String> {
         && ours != theirs
     {
         warnings.push(format!("the pictures are of {ours} and {theirs} bounces"));
+    }
+    for header in [a, b] {
+        if let Some(count) = header.invalid_samples.filter(|&count| count > 0) {
+            let path = header.path().display();
+            warnings.push(format!(
+                "{path} has {count} invalid samples, which count as zeros: its error bars say \
+                 nothing of what they would have brought"
+            ));
+        }
     }
     for header in [a, b].into_iter().filter(|header| header.other_primaries) {
         let path = header.path().display();

@@ -10,12 +10,17 @@ mod diff;
 mod environment;
 mod hard;
 mod interrupt;
+mod ledger;
 mod memory;
 mod output;
 mod phases;
 mod pilot;
 mod progress;
 mod render;
+mod render_report;
+mod replay;
+mod replay_json;
+mod replay_table;
 mod setup;
 mod streams;
 mod verify;
@@ -61,6 +66,7 @@ pub fn main() -> ExitCode {
         Command::Verify(args) => verify::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Cost(args) => cost::run(args),
+        Command::Replay(args) => replay::run(args),
         Command::Devices => devices::run(),
     });
     match ended {

@@ -14,8 +14,6 @@ use crate::render::{Audience, Outcome, Plan, Progress, Stop, render};
 use crate::report::{ErrorLog, FileError, Picture, Provenance};
 use crate::scene::{MAX_SPP, Scene, Source};
 use crate::tracer::{Description, Ledger};
-use serde::Serialize;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
@@ -41,11 +39,11 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     if let Some(error) = finished.log_error {
         return Err(error.into());
     }
-    Ok(match (finished.outcome.stop, finished.target_reached(args.target_error)) {
-        (Stop::Interrupted, _) => INTERRUPTED,
-        (_, Some(false)) => FAILED,
-        _ => DONE,
-    })
+    if args.strict && finished.ledger.count > 0 {
+        let count = finished.ledger.count;
+        streams::message(&format!("error: {count} samples were invalid, and --strict allows none"));
+    }
+    Ok(finished.code(args))
 }
 
 /// What to render: the samples that were asked for; with `--time` or `--target-error` alone, as
@@ -64,16 +62,16 @@ fn plan(args: &RenderArgs, scene: &Scene) -> Plan {
 }
 
 /// A render that is over.
-struct Finished {
+pub(super) struct Finished {
     /// What was rendered, with the estimator that was used.
-    scene: Scene,
-    film: Film,
-    ledger: Ledger,
-    summary: Summary,
-    outcome: Outcome,
-    tracer: Description,
+    pub scene: Scene,
+    pub film: Film,
+    pub ledger: Ledger,
+    pub summary: Summary,
+    pub outcome: Outcome,
+    pub tracer: Description,
     /// Why the log is not whole.
-    log_error: Option<FileError>,
+    pub log_error: Option<FileError>,
 }
 
 /// The log that was asked for, and what became of it. A log that cannot be written costs no
@@ -183,44 +181,18 @@ fn darkness(args: &RenderArgs, scene: Scene, plan: &Plan) -> Result<Finished, Re
     })
 }
 
-/// The `--json` object.
-#[derive(Serialize)]
-struct Json<'a> {
-    device: &'a str,
-    driver: &'a str,
-    estimator: &'a str,
-    width: u32,
-    height: u32,
-    spp: u64,
-    seconds: f64,
-    samples_per_second: Option<f64>,
-    relative_error: Option<f64>,
-    error_bound: Option<f64>,
-    target_error: Option<f64>,
-    target_reached: Option<bool>,
-    unproven_pixels: u64,
-    coarse_pixels: u64,
-    invalid_samples: u64,
-    outputs: &'a [PathBuf],
-}
-
 impl Finished {
-    /// Whether the error is certainly at or below the target, if there is one.
-    fn target_reached(&self, target: Option<f64>) -> Option<bool> {
-        target.map(|target| self.summary.error_bound.is_some_and(|bound| bound <= target))
+    /// The exit code.
+    pub(super) fn code(&self, args: &RenderArgs) -> u8 {
+        let missed = self.target_reached(args.target_error) == Some(false);
+        match self.outcome.stop {
+            Stop::Interrupted => INTERRUPTED,
+            _ if missed || (args.strict && self.ledger.count > 0) => FAILED,
+            _ => DONE,
+        }
     }
 
-    fn seconds(&self) -> f64 {
-        self.outcome.elapsed.as_secs_f64()
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "for show")]
-    fn rate(&self) -> Option<f64> {
-        let samples = self.summary.samples as f64 * f64::from(self.film.size().pixels());
-        (self.seconds() > 0.0).then(|| samples / self.seconds())
-    }
-
-    fn provenance(&self, args: &RenderArgs) -> Provenance {
+    pub(super) fn provenance(&self, args: &RenderArgs) -> Provenance {
         let name = args.scene.file_name().unwrap_or_default();
         Provenance {
             scene_file: name.to_string_lossy().into_owned(),
@@ -232,117 +204,11 @@ impl Finished {
             scale: self.film.scale(),
             tracer: self.tracer.clone(),
             seconds: self.seconds(),
-            invalid_samples: self.ledger.count,
+            ledger: self.ledger.clone(),
             unproven_pixels: self.summary.unproven_pixels,
             coarse_pixels: self.summary.coarse_pixels,
             relative_error: self.summary.relative_error,
             error_bound: self.summary.error_bound,
         }
-    }
-
-    fn report(&self, args: &RenderArgs, files: &[PathBuf]) -> String {
-        if args.common.json {
-            return self.json(args, files);
-        }
-        let written = files.iter().map(|file| format!("wrote {}", file.display()));
-        let invalid = self.ledger.records.iter().map(|sample| {
-            format!(
-                "invalid: pixel {},{} sample {} ({:?})",
-                sample.pixel % self.film.size().width(),
-                sample.pixel / self.film.size().width(),
-                sample.index,
-                sample.reason
-            )
-        });
-        written.chain(invalid).chain([self.line(args.target_error)]).collect::<Vec<_>>().join("\n")
-    }
-
-    fn json(&self, args: &RenderArgs, outputs: &[PathBuf]) -> String {
-        let json = Json {
-            device: &self.tracer.device,
-            driver: &self.tracer.driver,
-            estimator: self.scene.settings().estimator().name(),
-            width: self.film.size().width(),
-            height: self.film.size().height(),
-            spp: self.summary.samples,
-            seconds: self.seconds(),
-            samples_per_second: self.rate(),
-            relative_error: self.summary.relative_error,
-            error_bound: self.summary.error_bound,
-            target_error: args.target_error,
-            target_reached: self.target_reached(args.target_error),
-            unproven_pixels: self.summary.unproven_pixels,
-            coarse_pixels: self.summary.coarse_pixels,
-            invalid_samples: self.ledger.count,
-            outputs,
-        };
-        serde_json::to_string(&json).expect("plain values serialize")
-    }
-
-    /// How it ended.
-    fn ending(&self, target: Option<f64>) -> String {
-        let stopped = match self.outcome.stop {
-            Stop::Done | Stop::Target => "done",
-            Stop::Time => "time is up",
-            Stop::Interrupted => "interrupted",
-        };
-        match (target, self.target_reached(target)) {
-            (Some(target), Some(true)) => format!("{} reached", units::percent(target)),
-            (Some(target), _) => format!("{stopped}, {} not reached", units::percent(target)),
-            _ => stopped.to_owned(),
-        }
-    }
-
-    /// The error, and with a target also what it is at most.
-    fn error(&self, target: Option<f64>) -> String {
-        let Some(error) = self.summary.relative_error else { return "error unknown".to_owned() };
-        let bound = match (target, self.summary.error_bound) {
-            (None, _) => String::new(),
-            (_, Some(b)) => format!(", at most {:.3} % with 99 % confidence", 100.0 * b),
-            (_, None) => format!(", without a bound ({})", self.why_unbounded()),
-        };
-        format!("error {:.3} %{bound}", 100.0 * error)
-    }
-
-    /// Why nothing can be said of how large the error is at most.
-    fn why_unbounded(&self) -> String {
-        if self.ledger.count > 0 {
-            return "samples were invalid".to_owned();
-        }
-        if self.outcome.stop == Stop::Interrupted {
-            return "the render was interrupted".to_owned();
-        }
-        let largest = f64::from(self.film.scale().bound()) / self.summary.luminance;
-        format!("one sample may be {largest:.0e} times the mean, so much may not be found yet")
-    }
-
-    /// What a target that was not reached would cost, where that can be told.
-    #[expect(clippy::cast_precision_loss, reason = "for show")]
-    fn more(&self, target: f64) -> Option<String> {
-        let more = self.summary.spread.samples_to(target)?.saturating_sub(self.summary.samples);
-        let seconds = self.seconds() * more as f64 / self.summary.samples as f64;
-        Some(format!("{} takes {} more", units::percent(target), units::time(seconds)))
-    }
-
-    /// The last line: what was reached, and what the next halving of the error would cost.
-    fn line(&self, target: Option<f64>) -> String {
-        let mut facts = vec![
-            self.error(target),
-            format!("{} spp", self.summary.samples),
-            format!("{:.2} s on {}", self.seconds(), self.tracer.device),
-            format!("{} invalid samples", self.ledger.count),
-            format!("{} unproven pixels", self.summary.unproven_pixels),
-        ];
-        if self.summary.coarse_pixels > 0 {
-            facts.push(format!("{} pixels near the film's step", self.summary.coarse_pixels));
-        }
-        if let Some(target) = target.filter(|_| self.target_reached(target) == Some(false)) {
-            facts.extend(self.more(target));
-        }
-        if self.summary.relative_error.is_some_and(|error| error > 0.0) {
-            // The error falls with the square root of the samples: half of it takes four times.
-            facts.push(format!("half the error takes {} more", units::time(3.0 * self.seconds())));
-        }
-        format!("{}: {}", self.ending(target), facts.join(", "))
     }
 }

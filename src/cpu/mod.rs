@@ -10,12 +10,14 @@ mod light;
 pub mod material;
 mod nearest;
 mod pick;
+mod replay;
 pub mod rng;
 pub mod sampling;
 mod scene;
 pub mod sphere;
 mod trace;
 
+pub use replay::replay;
 pub use rng::SampleKey;
 pub use scene::PreparedScene;
 pub use trace::trace;
@@ -23,15 +25,14 @@ pub use trace::trace;
 use crate::bound::sample_scale;
 use crate::film::{Film, PixelSums, PixelWords, SampleScale};
 use crate::scene::Scene;
-use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
+use crate::tracer::{
+    Description, InvalidReason, InvalidSample, LEDGER_RECORDS, Ledger, TraceError, Tracer,
+};
 use glam::Vec3;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::num::NonZeroUsize;
 use std::ops::Range;
-
-/// Invalid samples recorded with their address; as many as on the device.
-const LEDGER_RECORDS: usize = 16;
 
 /// Traces on this machine's processor, in `f64`.
 pub struct CpuTracer {
@@ -72,7 +73,7 @@ impl Tracer for CpuTracer {
                 .map(|(pixel, words)| add_to_pixel(scene, scale, pixel, range.clone(), words))
                 .reduce(Ledger::default, merge)
         });
-        self.ledger = merge(std::mem::take(&mut self.ledger), invalid);
+        self.ledger.append(invalid);
         Ok(())
     }
 
@@ -113,24 +114,23 @@ fn add_to_pixel(
         let radiance = radiance.to_array();
         if scale.admits(radiance) {
             sums.add(radiance, scale);
-        } else {
-            record_invalid(&mut invalid, pixel, index);
+        } else if let Some(reason) = InvalidReason::of(radiance, scale.bound()) {
+            record_invalid(&mut invalid, InvalidSample { pixel, index, reason });
         }
     }
     *words = sums.words();
     invalid
 }
 
-fn record_invalid(ledger: &mut Ledger, pixel: u32, index: u64) {
+fn record_invalid(ledger: &mut Ledger, sample: InvalidSample) {
     ledger.count += 1;
     if ledger.records.len() < LEDGER_RECORDS {
-        let reason = InvalidReason::OutOfBounds;
-        ledger.records.push(InvalidSample { pixel, index, reason });
+        ledger.records.push(sample);
     }
 }
 
-/// Both ledgers together. Of the records the smallest addresses stay, so that they do
-/// not depend on which thread came first.
+/// Both ledgers of one range of samples together. Of the records the smallest addresses stay,
+/// so that they do not depend on which thread came first.
 fn merge(mut ours: Ledger, theirs: Ledger) -> Ledger {
     ours.count += theirs.count;
     ours.records.extend(theirs.records);
@@ -166,7 +166,8 @@ mod tests {
             assert_eq!(tracer.ledger.count, 9 * 7 * 10);
             let addresses: Vec<_> =
                 tracer.ledger.records.iter().map(|r| (r.pixel, r.index)).collect();
-            let first: Vec<_> = (0..16).map(|i| (i / 10, u64::from(i % 10))).collect();
+            // Those of the first call, pixel by pixel.
+            let first: Vec<_> = (0..16).map(|i| (i / 5, u64::from(5 + i % 5))).collect();
             assert_eq!(addresses, first);
             assert!(tracer.film.pixels().iter().flatten().all(|&word| word == 0));
             assert_eq!(tracer.film.samples().count(), 10);

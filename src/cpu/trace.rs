@@ -59,13 +59,69 @@ fn camera_ray(camera: &Pinhole, pixel: u32, u: DVec2) -> Ray {
     Ray { origin: camera.origin, direction }
 }
 
+/// How a path left its last vertex.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Departure {
+    pub(super) point: SurfacePoint,
+    /// Density of the direction, per steradian.
+    pub(super) density: f64,
+    /// Whether nothing but this direction could find the light that it hits.
+    pub(super) alone: bool,
+}
+
+/// A path under way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Path {
+    pub(super) ray: Ray,
+    pub(super) throughput: DVec3,
+    /// The sphere that the ray starts on.
+    pub(super) leaving: Option<usize>,
+    /// Only paths that sample lights ask for it.
+    pub(super) departure: Departure,
+    pub(super) radiance: DVec3,
+}
+
+impl Path {
+    /// The path of a sample, at the camera.
+    pub(super) fn start(scene: &PreparedScene, key: SampleKey) -> Self {
+        let u = unit_floats(random_bits(key, 0, scene.seed));
+        let ray = camera_ray(&scene.camera, key.pixel, u);
+        let eye = SurfacePoint { position: ray.origin, normal: ray.direction };
+        Self {
+            ray,
+            throughput: DVec3::ONE,
+            leaving: None,
+            departure: Departure { point: eye, density: 0.0, alone: true },
+            radiance: DVec3::ZERO,
+        }
+    }
+}
+
+/// Whether paths sample lights where they scatter.
+pub(super) fn connects(scene: &PreparedScene) -> bool {
+    scene.estimator.samples_lights() && !scene.lights.is_empty()
+}
+
 /// The radiance that one sample brings back, whole: not rounded to `f32`.
 #[must_use]
 pub fn trace(scene: &PreparedScene, key: SampleKey) -> DVec3 {
-    let ray = camera_ray(&scene.camera, key.pixel, unit_floats(random_bits(key, 0, scene.seed)));
-    if scene.estimator.samples_lights() && !scene.lights.is_empty() {
-        connected::trace(scene, key, ray)
+    if connects(scene) {
+        follow(scene, key, |path, bounce| connected::advance(path, scene, key, bounce))
     } else {
-        blind::trace(scene, key, ray)
+        follow(scene, key, |path, bounce| blind::advance(path, scene, key, bounce))
     }
+}
+
+/// Follows a path from segment to segment.
+fn follow(
+    scene: &PreparedScene,
+    key: SampleKey,
+    mut advance: impl FnMut(&mut Path, u32) -> bool,
+) -> DVec3 {
+    let mut path = Path::start(scene, key);
+    let mut bounce = 0;
+    while bounce <= scene.bounces && advance(&mut path, bounce) {
+        bounce += 1;
+    }
+    path.radiance
 }

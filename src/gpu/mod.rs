@@ -4,7 +4,9 @@ mod bands;
 mod device;
 mod pace;
 pub mod probe;
+mod replay;
 mod tracer;
 
 pub use device::{Adapter, Gpu, adapters};
+pub use replay::Replayer;
 pub use tracer::GpuTracer;

@@ -10,6 +10,9 @@ const BUDGET: Duration = Duration::from_millis(100);
 /// Samples of the first dispatch, small enough for any device.
 const FIRST: u64 = 1 << 16;
 
+/// Samples of the largest dispatch; far more than any device traces in the budget.
+const MOST: u64 = 1 << 30;
+
 /// Samples per dispatch, learnt from the dispatches so far.
 #[derive(Debug)]
 pub(super) struct Pace {
@@ -40,7 +43,8 @@ impl Pace {
         let fitting = samples as f64 * BUDGET.as_secs_f64() / took.as_secs_f64().max(1e-6);
         // A dispatch that was cut small by the picture's end says nothing about more.
         if samples * 2 >= self.samples || (fitting as u64) < self.samples {
-            self.samples = (fitting as u64).clamp(self.samples / 4, self.samples * 4).max(1);
+            let near = (fitting as u64).clamp(self.samples / 4, self.samples * 4);
+            self.samples = near.clamp(1, MOST);
         }
     }
 }

@@ -21,6 +21,10 @@ const MAX_ITERATIONS: u64 = 65_535;
 /// below.
 const _: () = assert!((MAX_BOUNCES as u64 + 1) * (SPHERE_CAPACITY as u64 + 1) < MAX_ITERATIONS);
 
+/// The device counts invalid samples in 32 bits, so its ledger is taken to the host before it
+/// can have met that many: after this many samples and one more dispatch, which is shorter.
+const MAX_UNREAD: u64 = 1 << 31;
+
 /// Workgroups along one dimension of a dispatch, WebGPU's default limit.
 const MAX_WORKGROUPS: u32 = 65_535;
 
@@ -35,6 +39,10 @@ pub struct GpuTracer {
     pipeline: wgpu::ComputePipeline,
     work: wgpu::Buffer,
     ledger: wgpu::Buffer,
+    /// What was taken from the device's ledger so far.
+    invalid: Ledger,
+    /// Samples since then.
+    unread: u64,
     bands: Vec<(Band, wgpu::BindGroup)>,
     pace: Pace,
 }
@@ -66,7 +74,7 @@ impl GpuTracer {
         wgsl: &str,
     ) -> Result<Self, TraceError> {
         let device = gpu.device();
-        let pipeline = pipeline(device, wgsl);
+        let pipeline = pipeline(device, wgsl, "render");
         gpu.check()?;
         let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("scene"),
@@ -81,13 +89,15 @@ impl GpuTracer {
         let ledger = buffer::<layout::Ledger>(
             device,
             "ledger",
-            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
         );
         let layout = pipeline.get_bind_group_layout(0);
         let bands = bands::allocate(&gpu, scene.size())?
             .into_iter()
             .map(|band| {
-                let group = bind(device, &layout, [&uniform, &work, &band.buffer, &ledger]);
+                let group = bind(device, &layout, &[&uniform, &work, &band.buffer, &ledger]);
                 (band, group)
             })
             .collect();
@@ -101,6 +111,8 @@ impl GpuTracer {
             pipeline,
             work,
             ledger,
+            invalid: Ledger::default(),
+            unread: 0,
             bands,
             pace: Pace::default(),
         })
@@ -150,7 +162,24 @@ impl GpuTracer {
         let samples =
             u64::from(self.size.width()) * u64::from(rows.end - rows.start) * u64::from(count);
         self.pace.learn(samples, started.elapsed());
-        Ok(())
+        self.unread += samples;
+        if self.unread >= MAX_UNREAD { self.take_ledger() } else { Ok(()) }
+    }
+
+    /// Moves what the device's ledger holds to the host's.
+    fn take_ledger(&mut self) -> Result<(), TraceError> {
+        let bytes = bands::read_buffer(&self.gpu, &self.ledger)?;
+        let ledger: layout::Ledger = bytemuck::pod_read_unaligned(&bytes);
+        let records = ledger.records.as_chunks().0.iter().take(ledger.count as usize);
+        self.invalid.append(Ledger {
+            count: u64::from(ledger.count),
+            records: records.map(|record| invalid_sample(record, self.scale.bound())).collect(),
+        });
+        self.unread = 0;
+        let mut encoder =
+            self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.clear_buffer(&self.ledger, 0, None);
+        self.gpu.run(encoder)
     }
 
     /// Samples of every pixel that one round of dispatches traces, at most `left`.
@@ -197,18 +226,8 @@ impl Tracer for GpuTracer {
     }
 
     fn ledger(&mut self) -> Result<Ledger, TraceError> {
-        let bytes = bands::read_buffer(&self.gpu, &self.ledger)?;
-        let ledger: layout::Ledger = bytemuck::pod_read_unaligned(&bytes);
-        let records = ledger.records.as_chunks().0.iter().take(ledger.count as usize);
-        let records = records.map(|&[pixel, low, high, reason]| InvalidSample {
-            pixel,
-            index: u64::from(high) << 32 | u64::from(low),
-            reason: match reason {
-                layout::REASON_UNFINISHED => InvalidReason::Unfinished,
-                _ => InvalidReason::OutOfBounds,
-            },
-        });
-        Ok(Ledger { count: u64::from(ledger.count), records: records.collect() })
+        self.take_ledger()?;
+        Ok(self.invalid.clone())
     }
 
     fn describe(&self) -> Description {
@@ -216,10 +235,25 @@ impl Tracer for GpuTracer {
     }
 }
 
+/// A record of the device's ledger, and what its bits say of the reason.
+fn invalid_sample(record: &[u32; layout::RECORD_WORDS], bound: f32) -> InvalidSample {
+    let &[pixel, low, high, finished, r, g, b, _] = record;
+    let wrong = InvalidReason::of([r, g, b].map(f32::from_bits), bound);
+    InvalidSample {
+        pixel,
+        index: u64::from(high) << 32 | u64::from(low),
+        reason: match wrong {
+            _ if finished == 0 => InvalidReason::Unfinished,
+            Some(reason) => reason,
+            None => InvalidReason::AboveBound,
+        },
+    }
+}
+
 /// Refuses paths whose loops a driver may cut short: a vertex that samples lights goes
 /// through the spheres twice and through the lights up to three times (two passes to
 /// pick one, one for the chance of one that the path hits by itself).
-fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceError> {
+pub(super) fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceError> {
     if !scene.settings().estimator().samples_lights() {
         return Ok(());
     }
@@ -238,22 +272,26 @@ fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceE
     )))
 }
 
-fn pipeline(device: &wgpu::Device, wgsl: &str) -> wgpu::ComputePipeline {
+pub(super) fn pipeline(device: &wgpu::Device, wgsl: &str, entry: &str) -> wgpu::ComputePipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("candor kernel"),
         source: wgpu::ShaderSource::Wgsl(wgsl.into()),
     });
     device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("render"),
+        label: Some(entry),
         layout: None,
         module: &module,
-        entry_point: Some("render"),
+        entry_point: Some(entry),
         compilation_options: wgpu::PipelineCompilationOptions::default(),
         cache: None,
     })
 }
 
-fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(super) fn buffer<T>(
+    device: &wgpu::Device,
+    label: &str,
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size_of::<T>() as u64,
@@ -262,10 +300,10 @@ fn buffer<T>(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages) -> w
     })
 }
 
-fn bind(
+pub(super) fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    buffers: [&wgpu::Buffer; 4],
+    buffers: &[&wgpu::Buffer],
 ) -> wgpu::BindGroup {
     let entries: Vec<wgpu::BindGroupEntry> = (0..)
         .zip(buffers)

@@ -1,6 +1,7 @@
 //! Composes the kernel's WGSL from the fragments in `shaders/`, by concatenation alone.
 
 use super::pack::{Form, Packed};
+use super::unrolled;
 use crate::effects::Effects;
 use crate::scene::{Estimator, ImageSize, Scene};
 use crate::viewpoint::Viewpoint;
@@ -59,7 +60,7 @@ impl Nearest {
     fn wgsl(&self) -> String {
         match self {
             Self::Loop => fragment!("nearest_loop").to_owned(),
-            Self::Unrolled(forms) => unrolled(forms),
+            Self::Unrolled(forms) => unrolled::nearest(forms),
         }
     }
 }
@@ -69,26 +70,32 @@ impl Nearest {
 /// (BENCHMARKS.md, "Speed of the classic scene").
 const UNROLLED_BOUNCES: u32 = 4;
 
-/// The function that follows a path from segment to segment.
-fn follow(bounces: u32) -> String {
-    let segments: String = if bounces > UNROLLED_BOUNCES {
-        let step = "        goes_on = advance(&path, key, bounce);\n";
-        format!(
-            "    for (var bounce = 0u; bounce <= BOUNCES && goes_on; bounce++) {{\n{step}    }}\n"
-        )
-    } else {
-        let step = |bounce| {
-            format!(
-                "    if goes_on {{\n        goes_on = advance(&path, key, {bounce}u);\n    }}\n"
-            )
-        };
-        (0..=bounces).map(step).collect()
+/// The statements that take a path from segment to segment.
+fn steps(bounces: u32) -> String {
+    if bounces > UNROLLED_BOUNCES {
+        return looped("advance");
+    }
+    let step = |bounce| {
+        format!("    if goes_on {{\n        goes_on = advance(&path, key, {bounce}u);\n    }}\n")
     };
+    (0..=bounces).map(step).collect()
+}
+
+/// The same as a loop, with any function that advances a path.
+fn looped(advance: &str) -> String {
+    format!(
+        "    for (var bounce = 0u; bounce <= BOUNCES && goes_on; bounce++) {{\n        \
+         goes_on = {advance}(&path, key, bounce);\n    }}\n"
+    )
+}
+
+/// The function that follows a path, taking these steps.
+fn follow(steps: &str) -> String {
     format!(
         "// One path: from the camera to a light, to nowhere, or to its last bounce.\n\
          fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {{\n    load_shapes();\n    \
          var path = start(camera_ray(pixel, unit_floats(random_bits(key, 0u))));\n    \
-         var goes_on = true;\n{segments}    \
+         var goes_on = true;\n{steps}    \
          return Sample(path.radiance, path.finished);\n}}\n"
     )
 }
@@ -174,6 +181,31 @@ impl Kernel {
             "const TILE_WIDTH: u32 = {width}u;\nconst TILE_HEIGHT: u32 = {height}u;\n\
              const TILE_SAMPLES: u32 = {samples}u;\n"
         );
+        let mut parts = self.path();
+        parts.push(follow(&steps(self.bounces)));
+        let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
+        parts.extend(last.map(str::to_owned));
+        parts.join("\n")
+    }
+
+    /// The WGSL of the entry point `replay`, which traces one sample with the text that
+    /// `render` traces it with, and records its path. Bounces are always a loop: written out,
+    /// recording among several lights takes lavapipe's compiler minutes.
+    #[must_use]
+    pub fn replay_wgsl(&self) -> String {
+        let mut parts = self.path();
+        parts.push(follow(&looped("observe")));
+        let connection = if self.samples_lights() {
+            fragment!("replay_connected")
+        } else {
+            fragment!("replay_blind")
+        };
+        parts.extend([connection, fragment!("replay")].map(str::to_owned));
+        parts.join("\n")
+    }
+
+    /// What advances a path by one segment.
+    fn path(&self) -> Vec<String> {
         let mut parts = self.tracing(self.diffuse());
         if self.samples_lights() {
             parts.extend(self.connecting());
@@ -188,10 +220,7 @@ impl Kernel {
         } else {
             parts.push(fragment!("path_blind").to_owned());
         }
-        parts.push(follow(self.bounces));
-        let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
-        parts.extend(last.map(str::to_owned));
-        parts.join("\n")
+        parts
     }
 
     /// Whether there is a light to sample and a surface to sample it from.
@@ -277,80 +306,12 @@ impl Kernel {
         };
         let occluded = match &self.nearest {
             Nearest::Loop => fragment!("occluded_loop").to_owned(),
-            Nearest::Unrolled(forms) => unrolled_occluded(forms, self.lights.only()),
+            Nearest::Unrolled(forms) => unrolled::occluded(forms, self.lights.only()),
         };
         [fragment!("evaluate"), evaluate, fragment!("light"), form, side, &pick, &occluded]
             .map(str::to_owned)
             .to_vec()
     }
-}
-
-/// Places of the spheres in the uniform buffer, with their forms, in the order of the
-/// scene file: factored spheres come first there, each group in the order of the file.
-fn places(forms: &[Form]) -> Vec<(&'static str, u32)> {
-    let mut factored = 0..;
-    let mut anchored = (0..).skip(forms.iter().filter(|&&form| form == Form::Factored).count());
-    forms
-        .iter()
-        .filter_map(|form| match form {
-            Form::Factored => Some(("factored", factored.next()?)),
-            Form::Anchored => Some(("anchored", anchored.next()?)),
-        })
-        .collect()
-}
-
-/// Whether anything hides a light, in straight-line code, in the order of the scene file;
-/// where there is only one light, it is not asked. At equal distances the first in the file
-/// is seen, here as in the search, so what stands before the light in the file hides it there.
-fn unrolled_occluded(forms: &[Form], only: Option<u32>) -> String {
-    let steps: String = places(forms)
-        .into_iter()
-        .map(|(form, i)| {
-            let arguments = match form {
-                "factored" => format!("shape_{i}.position, shape_{i}.size"),
-                _ => format!("shape_{i}.position, shape_{i}.offset, shape_{i}.size"),
-            };
-            let distance = format!("distance_to({form}(ray, {arguments}), {i}u, leaving)");
-            match only {
-                Some(light) if light == i => "    earlier = first;\n".to_owned(),
-                Some(_) => format!("    first = min(first, {distance});\n"),
-                None => format!(
-                    "    earlier = select(earlier, first, light == {i}u);\n    \
-                     first = min(first, select({distance}, MISS, light == {i}u));\n"
-                ),
-            }
-        })
-        .collect();
-    format!(
-        "// Whether a sphere other than `light` is seen first: one that is nearer than\n\
-         // `distance`, or as near and earlier in the scene file.\n\
-         fn occluded(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool {{\n    \
-         var first = MISS;\n    var earlier = MISS;\n{steps}    \
-         return first < distance || earlier <= distance;\n}}\n"
-    )
-}
-
-/// Straight-line search. The shapes are loaded once a path and not once a segment, which
-/// matters where a driver fetches uniforms lane by lane.
-fn unrolled(forms: &[Form]) -> String {
-    let places = places(forms);
-    let lines = |line: &dyn Fn(&str, u32) -> String| -> String {
-        places.iter().map(|&(form, i)| line(form, i)).collect()
-    };
-    let variables = lines(&|_, i| format!("var<private> shape_{i}: Shape;\n"));
-    let loads = lines(&|_, i| format!("    shape_{i} = shape_of({i}u);\n"));
-    let steps = lines(&|form, i| {
-        format!("    best = closer_{form}(best, ray, shape_{i}, {i}u, leaving);\n")
-    });
-    format!(
-        "// A few spheres: one statement each, in the order of the scene file, so that a\n\
-         // strict comparison leaves the lowest index.\n\n\
-         {variables}\n\
-         fn load_shapes() {{\n{loads}}}\n\n\
-         // `leaving` is the sphere that the ray starts on.\n\
-         fn nearest(ray: Ray, leaving: u32) -> Hit {{\n    \
-         var best = Hit(MISS, NO_SPHERE);\n{steps}    return best;\n}}\n"
-    )
 }
 
 /// The WGSL of the probe: entry points that run single functions of the kernel over a

@@ -2,14 +2,15 @@
 //! field for field; `tests/layout.rs` compares them with naga's offsets and through an
 //! echo on the device. Padding that WGSL leaves implicit is spelled out here.
 
+use crate::tracer::LEDGER_RECORDS;
 use bytemuck::{Pod, Zeroable};
 
 /// Spheres that the uniform buffer holds.
 pub const SPHERE_CAPACITY: usize = 512;
 /// In place of a sphere, in the kernel and in the probe's tables: none.
 pub const NO_SPHERE: u32 = u32::MAX;
-/// Invalid samples that the ledger records.
-pub const LEDGER_RECORDS: usize = 16;
+/// Words of one record of the ledger.
+pub const RECORD_WORDS: usize = 8;
 
 /// [`Sphere::kind`] of an emitter.
 pub const KIND_EMITTER: u32 = 0;
@@ -17,11 +18,6 @@ pub const KIND_EMITTER: u32 = 0;
 pub const KIND_DIFFUSE: u32 = 1;
 /// [`Sphere::kind`] of a glossy surface.
 pub const KIND_GLOSSY: u32 = 2;
-
-/// Ledger reason: a loop was cut short.
-pub const REASON_UNFINISHED: u32 = 1;
-/// Ledger reason: not a number from 0 to the bound.
-pub const REASON_OUT_OF_BOUNDS: u32 = 2;
 
 /// One sphere, in kernel units.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -103,7 +99,56 @@ pub struct Dispatch {
 pub struct Ledger {
     /// How many.
     pub count: u32,
-    /// The first ones, four words each: pixel, low and high word of the sample index, and
-    /// one of the `REASON_` constants.
-    pub records: [u32; 4 * LEDGER_RECORDS],
+    /// The first ones: pixel, low and high word of the sample index, 1 if it was finished, the
+    /// bit patterns of its radiance, and 0.
+    pub records: [u32; RECORD_WORDS * LEDGER_RECORDS],
+}
+
+/// What the entry point `replay` is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Request {
+    /// Pixel number, row by row from the top.
+    pub pixel: u32,
+    /// Low word of the sample index.
+    pub index_low: u32,
+    /// High word of the sample index.
+    pub index_high: u32,
+}
+
+/// In place of a sphere: a driver cut the search short.
+pub const UNFINISHED: u32 = u32::MAX - 1;
+
+/// One segment of a path, in kernel units, and the sample's radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Replay {
+    /// Where the ray starts.
+    pub origin: [f32; 3],
+    /// 1 where the path came this far.
+    pub reached: u32,
+    /// Unit vector along the ray.
+    pub direction: [f32; 3],
+    /// Place of the sphere that was hit, [`NO_SPHERE`] or [`UNFINISHED`].
+    pub sphere: u32,
+    /// Where it was hit.
+    pub position: [f32; 3],
+    /// Length of the segment.
+    pub distance: f32,
+    /// Unit normal on the side that the ray came from.
+    pub normal: [f32; 3],
+    /// Place of the light that was sampled, or [`NO_SPHERE`].
+    pub light: u32,
+    /// Product of the weights, that of the scattering at the segment's end included.
+    pub throughput: [f32; 3],
+    /// 1 where nothing stands before the light.
+    pub visible: u32,
+    /// Radiance that the path brought so far.
+    pub radiance: [f32; 3],
+    /// 1 where the path does not end here.
+    pub goes_on: u32,
+    /// Radiance of the whole sample.
+    pub sample: [f32; 3],
+    /// 1 if no loop was cut short.
+    pub finished: u32,
 }

@@ -3,6 +3,7 @@
 mod compose;
 pub mod layout;
 mod pack;
+mod unrolled;
 
 pub use compose::{Kernel, Lights, Nearest, Tile, UNROLLED_SPHERES, probe_source, validate};
 pub use layout::SPHERE_CAPACITY;

@@ -3,7 +3,7 @@
 use super::{FileError, Picture, replace};
 use crate::film::{SampleRanges, SampleScale};
 use crate::scene::SceneHash;
-use crate::tracer::Description;
+use crate::tracer::{Description, InvalidSample, Ledger};
 use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, Chromaticities, Text};
 use exr::prelude::{
@@ -48,7 +48,7 @@ pub struct Provenance {
     /// Time spent tracing, in seconds.
     pub seconds: f64,
     /// Invalid samples; they count as zeros.
-    pub invalid_samples: u64,
+    pub ledger: Ledger,
     /// Pixels that no sample has contributed to yet.
     pub unproven_pixels: u64,
     /// Pixels whose film step exceeds 1e-6 of their mean.
@@ -60,7 +60,8 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    fn attributes(&self) -> Vec<(&'static str, String)> {
+    /// Names and values; `width` is that of the picture in pixels.
+    fn attributes(&self, width: u32) -> Vec<(&'static str, String)> {
         let mut list = vec![
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
             ("scene", self.scene_file.clone()),
@@ -74,7 +75,7 @@ impl Provenance {
             ("device", self.tracer.device.clone()),
             ("driver", self.tracer.driver.clone()),
             ("seconds", format!("{:.3}", self.seconds)),
-            ("invalidSamples", self.invalid_samples.to_string()),
+            ("invalidSamples", self.ledger.count.to_string()),
             ("unprovenPixels", self.unproven_pixels.to_string()),
             ("coarsePixels", self.coarse_pixels.to_string()),
         ];
@@ -82,8 +83,20 @@ impl Provenance {
         for (name, error) in errors {
             list.extend(error.map(|error| (name, error.to_string())));
         }
+        if !self.ledger.records.is_empty() {
+            list.push(("invalidRecords", records(&self.ledger, width)));
+        }
         list
     }
+}
+
+/// Column, row, sample index and reason of each invalid sample that was recorded.
+fn records(ledger: &Ledger, width: u32) -> String {
+    let record = |sample: &InvalidSample| {
+        let (column, row) = (sample.pixel % width, sample.pixel / width);
+        format!("{column},{row} {} {}", sample.index, sample.reason.name())
+    };
+    ledger.records.iter().map(record).collect::<Vec<_>>().join("; ")
 }
 
 /// Writes channels R, G, B and `stderr.L` with the provenance in the header.
@@ -107,7 +120,7 @@ pub fn write(path: &Path, picture: &Picture, provenance: &Provenance) -> Result<
         software_name: Some(Text::from(concat!("candor ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
     };
-    for (name, value) in provenance.attributes() {
+    for (name, value) in provenance.attributes(picture.size.width()) {
         attributes.other.insert(
             Text::from(format!("{PREFIX}{name}").as_str()),
             AttributeValue::Text(latin(&value)),

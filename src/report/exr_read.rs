@@ -41,6 +41,10 @@ pub struct PictureHeader {
     pub seed: Option<u32>,
     /// Device that traced it.
     pub device: Option<String>,
+    /// How many of its samples were invalid, and count as zeros.
+    pub invalid_samples: Option<u64>,
+    /// The first of them: column, row, sample index and reason of each.
+    pub invalid_records: Option<String>,
 }
 
 /// A picture from a file.
@@ -105,6 +109,8 @@ impl PictureHeader {
             bounces: text(part, "bounces"),
             seed: text(part, "seed").and_then(|seed| seed.parse().ok()),
             device: text(part, "device"),
+            invalid_samples: text(part, "invalidSamples").and_then(|count| count.parse().ok()),
+            invalid_records: text(part, "invalidRecords"),
         })
     }
 

@@ -8,6 +8,7 @@ mod devices;
 mod diff;
 mod films;
 mod pictures;
+mod replay;
 #[cfg(unix)]
 mod signals;
 mod streams;
