@@ -1,5 +1,7 @@
 //! The declared range: what is refused, where, and that the device is right at its limits.
 
+#![expect(clippy::single_range_in_vec_init, reason = "one way of dividing the samples")]
+
 mod support {
     pub mod gpu;
     pub mod scenes;
