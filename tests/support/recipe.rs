@@ -112,8 +112,11 @@ fn surface() -> impl Strategy<Value = Surface> {
 }
 
 fn ball(decades: f64) -> impl Strategy<Value = Ball> {
-    (place(decades), length(decades), surface())
-        .prop_map(|(place, radius, surface)| Ball { place, radius, surface })
+    (place(decades), length(decades), surface()).prop_map(|(place, radius, surface)| Ball {
+        place,
+        radius,
+        surface,
+    })
 }
 
 fn eye() -> impl Strategy<Value = Eye> {
@@ -213,7 +216,10 @@ impl Recipe {
                     format!("material = \"m{i}\"")
                 }
             };
-            put(format!("\n[[spheres]]\ncenter = {}\nradius = {radius:?}\n{surface}", list(center)));
+            put(format!(
+                "\n[[spheres]]\ncenter = {}\nradius = {radius:?}\n{surface}",
+                list(center)
+            ));
         }
         text
     }
