@@ -93,11 +93,11 @@ fn a_huge_file_is_refused_unread() {
     let path = temporary("huge.toml", b"");
     // A file of nothing but a hole: it has the length, and takes no room on the disk.
     let file = fs::OpenOptions::new().write(true).open(&path).expect("the file was just written");
-    file.set_len((64 << 20) + 1).expect("a file can be made longer");
+    file.set_len((16 << 20) + 1).expect("a file can be made longer");
     let error = load(&path).expect_err("the file is too large");
     fs::remove_file(&path).expect("a temporary file can be removed");
     let expected =
-        format!("error: {} is too large: a scene file has at most 64 MiB", path.display());
+        format!("error: {} is too large: a scene file has at most 16 MiB", path.display());
     assert_eq!(error.to_string(), expected);
 }
 

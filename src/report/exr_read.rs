@@ -1,7 +1,7 @@
 //! Reads a picture from an EXR file, candor's own or another program's.
 
-use super::FileError;
 use super::exr::{PREFIX, REC_709, STANDARD_ERROR};
+use super::{FileError, printable};
 use crate::estimate::{Bars, Measured};
 use crate::film::SampleRanges;
 use crate::scene::ImageSize;
@@ -226,7 +226,7 @@ fn without_colours(meta: &MetaData) -> String {
 fn text(part: &Header, name: &str) -> Option<String> {
     let name = Text::new_or_none(format!("{PREFIX}{name}"))?;
     match part.own_attributes.other.get(&name)? {
-        AttributeValue::Text(text) => Some(text.to_string()),
+        AttributeValue::Text(text) => Some(printable(&text.to_string())),
         _ => None,
     }
 }

@@ -32,6 +32,12 @@ pub struct FileError {
 
 impl FileError {
     pub(crate) fn new(path: &Path, reason: &impl ToString) -> Self {
-        Self { path: path.to_owned(), reason: reason.to_string() }
+        Self { path: path.to_owned(), reason: printable(&reason.to_string()) }
     }
+}
+
+/// Text that may come from a file, with U+FFFD for control characters, which could drive a
+/// terminal.
+fn printable(text: &str) -> String {
+    text.replace(char::is_control, "\u{fffd}")
 }

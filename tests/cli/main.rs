@@ -7,6 +7,7 @@ mod cost;
 mod devices;
 mod diff;
 mod films;
+mod hostile;
 mod pictures;
 mod replay;
 #[cfg(unix)]
