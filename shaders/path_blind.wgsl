@@ -33,6 +33,10 @@ fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
     let point = surface_point(ray, hit);
     let u = unit_floats(random_bits(key, bounce + 1u));
     let scattering = scatter(hit.sphere, point.normal, ray.direction, u);
+    if !is_direction(scattering.direction) {
+        (*path).radiance = no_direction(scattering.direction);
+        return false;
+    }
     if scattering.weight == 0.0 {
         return false;
     }

@@ -75,6 +75,10 @@ fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
     let scattering = scatter(hit.sphere, point.normal, ray.direction, unit_floats(bits));
     let departure = Departure(point, scattering.density, !samples_light_at(hit.sphere));
     (*path).finished = !unfinished;
+    if !is_direction(scattering.direction) {
+        (*path).radiance = no_direction(scattering.direction);
+        return false;
+    }
     if scattering.weight == 0.0 || is_done(departure, bounce + 1u) {
         return false;
     }

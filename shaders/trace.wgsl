@@ -26,6 +26,17 @@ fn camera_ray(pixel: vec2<u32>, u: vec2<f32>) -> Ray {
     return Ray(camera_point(offset), normalize(scene.forward + offset));
 }
 
+// Whether a direction is one: NaN would turn into a hit or a miss and be lost, so it is
+// told by its bits. Squared length from ½ to 2.
+fn is_direction(direction: vec3<f32>) -> bool {
+    return bitcast<u32>(dot(direction, direction)) - 0x3f000000u <= 0x01000000u;
+}
+
+// What a sample brings whose path lost its direction: invalid, by NaN or by size.
+fn no_direction(direction: vec3<f32>) -> vec3<f32> {
+    return 3.0e38 * direction;
+}
+
 struct Sample {
     radiance: vec3<f32>,
     // False where a driver cut a loop short.

@@ -116,6 +116,40 @@ fn a_ledger_that_is_read_goes_on() {
     }
 }
 
+/// Directions that are none would turn into hits or misses and be lost; they are told where
+/// they are made, under every estimator, also where the path would have ended there.
+#[test]
+fn a_direction_that_is_none_is_an_invalid_sample() {
+    let wrong = [
+        ("NaN", "bitcast<f32>(0x7fc00000u + (key.pixel & 0x80000000u))", InvalidReason::NotANumber),
+        (
+            "infinite",
+            "bitcast<f32>(0x7f800000u + (key.pixel & 0x80000000u))",
+            InvalidReason::Infinite,
+        ),
+        ("too short", "0.5", InvalidReason::AboveBound),
+    ];
+    for estimator in candor::scene::Estimator::ALL {
+        let scene = scene();
+        let scene = scene.clone().with_settings(scene.settings().with_estimator(estimator));
+        for (name, value, reason) in wrong {
+            let from = "if !is_direction(scattering.direction) {";
+            let to = format!(
+                "if key.pixel == 58u {{ scattering.direction = vec3<f32>({value}, 0.0, 0.0); }}\n{from}"
+            );
+            let kernel = kernel(&scene)
+                .replace("let scattering = scatter(", "var scattering = scatter(")
+                .replace(from, &to);
+            let (_, ledger) = trace(&mut with_kernel(&scene, &kernel), &[0..8]);
+            let told = ledger.records.iter().all(|r| r.pixel == 58 && r.reason == reason);
+            assert!(ledger.count == 8 && told, "{name}, {}: {ledger:?}", estimator.name());
+            let blind = kernel.replace(from, "if false {");
+            let (_, ledger) = trace(&mut with_kernel(&scene, &blind), &[0..8]);
+            assert!(ledger.count < 8, "{name}, {}, unchecked: {ledger:?}", estimator.name());
+        }
+    }
+}
+
 /// A sample is what is wrong with any channel; what is worst is said first.
 #[test]
 fn reasons_go_by_the_worst_channel() {

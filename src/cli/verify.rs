@@ -44,9 +44,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
         run.film("device, other seed", &other_scene, chosen.tracer(&other_scene)?)?,
     ];
     let [Some(ours), Some(twin), Some(other)] = films else { return Ok(INTERRUPTED) };
-    let verdict = judge(&ours, &twin, &other);
-    streams::results(&report(&verdict, &device, spp, common.json))?;
-    Ok(if verdict.agrees() { DONE } else { FAILED })
+    let invalid = ours.invalid + twin.invalid + other.invalid;
+    let verdict = judge(&ours.film, &twin.film, &other.film);
+    streams::results(&report(&verdict, invalid, &device, spp, common.json))?;
+    Ok(if verdict.agrees() && invalid == 0 { DONE } else { FAILED })
 }
 
 /// The device that is checked.
@@ -79,7 +80,7 @@ impl Run<'_> {
         what: &str,
         scene: &Scene,
         mut tracer: Box<dyn Tracer>,
-    ) -> Result<Option<Film>, Refusal> {
+    ) -> Result<Option<Traced>, Refusal> {
         let plan = Plan { samples: 0..self.spp, time: None, target_error: None };
         let mut reporter = Reporter::new(self.quiet, scene.size().pixels(), &plan);
         reporter.message(&format!("{what}: {}", tracer.describe().device));
@@ -89,12 +90,15 @@ impl Run<'_> {
         if outcome?.stop == Stop::Interrupted {
             return Ok(None);
         }
-        let ledger = tracer.ledger()?;
-        if ledger.count > 0 {
-            return refuse(format_args!("{} of the samples on {what} were invalid", ledger.count));
-        }
-        Ok(Some(tracer.film()?))
+        Ok(Some(Traced { film: tracer.film()?, invalid: tracer.ledger()?.count }))
     }
+}
+
+/// What came of one tracer's samples.
+struct Traced {
+    film: Film,
+    /// How many were invalid.
+    invalid: u64,
 }
 
 /// The `--json` object.
@@ -104,6 +108,7 @@ struct Json<'a> {
     driver: &'a str,
     spp: u64,
     agrees: bool,
+    invalid_samples: u64,
     conclusive: bool,
     image_z: f64,
     image_p: f64,
@@ -116,14 +121,15 @@ struct Json<'a> {
     bias_error: [f64; 3],
 }
 
-fn report(verdict: &Verdict, device: &Description, spp: u64, json: bool) -> String {
+fn report(verdict: &Verdict, invalid: u64, device: &Description, spp: u64, json: bool) -> String {
     let found = &verdict.independent;
     if json {
         let json = Json {
             device: &device.device,
             driver: &device.driver,
             spp,
-            agrees: verdict.agrees(),
+            agrees: verdict.agrees() && invalid == 0,
+            invalid_samples: invalid,
             conclusive: found.conclusive,
             image_z: found.image.z,
             image_p: found.image.p,
@@ -141,7 +147,9 @@ fn report(verdict: &Verdict, device: &Description, spp: u64, json: bool) -> Stri
         let (bias, error) = (verdict.paired.bias[c], verdict.paired.error[c]);
         format!("{:+.5} ± {:.5} %", 100.0 * bias, 100.0 * error)
     });
-    let reading = if verdict.agrees() {
+    let reading = if invalid > 0 {
+        format!("INVALID SAMPLES: {invalid}; candor render names the first of them")
+    } else if verdict.agrees() {
         "the device agrees with the twin".to_owned()
     } else if verdict.disagrees() {
         format!(
