@@ -142,6 +142,33 @@ fn far_beyond_a_limit_the_device_is_wrong() {
     assert!(found.exceeds(MAX_BIAS, ALPHA), "{found:?}");
 }
 
+/// Seen from so near that nothing else is in the picture, which is what the limit for two
+/// spheres that touch is worth: two of them, a lamp and a diffuse one, at shares of it.
+#[test]
+fn beyond_the_limit_bias_grows_with_one_over_the_size() {
+    let (limit, _) = limit(touching, Arithmetic::Single);
+    let close = |radius: f64| {
+        let scene = touching(radius);
+        let position = scene.camera().position();
+        let fov = 2.0 * (3.0 * radius / position.distance(AIR)).atan().to_degrees();
+        let camera = Camera::new(position, AIR, DVec3::Y, fov).expect("a camera");
+        let settings = scene.settings().with_estimator(Estimator::Mis);
+        let scene = Scene::new(camera, scene.size(), settings, scene.spheres().to_vec());
+        let range = [0..2048];
+        pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range))
+    };
+    for share in [1.0, 0.3, 0.1, 0.03, 0.01, 0.003] {
+        let found = close(share * limit);
+        let [bias, error] = [found.bias[1], found.error[1]].map(|x| 100.0 * x);
+        println!("{share:<6} of the limit: {bias:+.3} ± {error:.3} %");
+        // From the limit down to a tenth of it the device is right; at a three-hundredth it is
+        // wrong by so much that one chance in a thousand is level enough.
+        let (right, wrong) = (!found.exceeds(MAX_BIAS, ALPHA), found.exceeds(MAX_BIAS, 1e-3));
+        assert!(right || share < 0.1, "{share}: {found:?}");
+        assert!(wrong || share > 0.005, "{share}: {found:?}");
+    }
+}
+
 /// Usual scenes are not refused: walls, things on the floor, things that overlap or hold
 /// each other, cameras on surfaces and inside.
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Arithmetic;
 use super::pairs::{TooManyPairs, visit_close_pairs};
-use crate::scene::{Scene, Sphere};
+use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
 
@@ -18,6 +18,9 @@ const FINEST: f64 = 1e-4;
 
 /// How much finer `f64` is than `f32`.
 const DOUBLE: f64 = 1.0 / (1 << 29) as f64;
+
+/// Spheres are tangent if they are so up to this share of their distance and radius.
+const TANGENT: f64 = 16.0 * f64::EPSILON;
 
 /// What is too small, and the size from which on it would not be.
 pub(super) enum Fault<'a> {
@@ -95,11 +98,14 @@ impl<'a> Judge<'a> {
             let apart = into < -limit || out < -limit;
             return (!apart).then_some(Fault::Close { small, large, limit });
         }
-        // From inside, what is outside of the large one is the hidden part. What is hidden
-        // altogether must be so by more than rounding.
+        // From inside, what is outside of the large one is the hidden part. A lamp that is
+        // hidden altogether must be so by more than rounding, or it would shine through.
         let inside = self.inside.contains(&large.ordinal());
         let (shown, limit) = if inside { (into, in_limit) } else { (out, out_limit) };
-        let hidden = -limit * (SMALLEST / FINEST);
+        let hidden = match small.surface() {
+            Surface::Emitter(_) => -limit * (SMALLEST / FINEST),
+            _ => TANGENT * (distance + large.radius()),
+        };
         (hidden < shown && shown < limit).then_some(Fault::Hidden { small, large, limit })
     }
 
