@@ -1,8 +1,8 @@
-//! Ten thousand million samples without an invalid one: every scene of the repository under
-//! every estimator, `cargo bench --bench soak [-- --samples N --device NAME]`.
+//! Ten thousand million samples without an invalid one: every scene of the repository, and of
+//! the sweep, under every estimator, `cargo bench --bench soak [-- --samples N --device NAME]`.
 //!
-//! The samples are shared out evenly over the scenes of `scenes/` and `scenes/hard/` and the
-//! four estimators. An invalid sample (NaN, infinite, negative, above the proven bound, or cut
+//! The samples are shared out evenly over the scenes of `scenes/`, `scenes/hard/` and `candor
+//! verify --hard`, and the four estimators. An invalid sample (NaN, infinite, negative, above the proven bound, or cut
 //! short) is counted and named, and the process fails.
 
 #[path = "support/options.rs"]
@@ -12,39 +12,45 @@ use candor::bound;
 use candor::gpu::{Adapter, GpuTracer};
 use candor::range::{self, Arithmetic};
 use candor::scene::{Estimator, Scene, load};
+use candor::sweep;
 use candor::tracer::{Ledger, Tracer};
 use candor::viewpoint::Viewpoint;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Scene files of a folder, by name. What a scene must look like stands beside it, in a file
-/// of two extensions.
+/// Scene files of a folder, by name.
 fn scene_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut files: Vec<PathBuf> = entries.map(|entry| entry.expect("a folder").path()).collect();
-    files.retain(|path| {
-        let stem = Path::new(path.file_stem().unwrap_or_default());
-        path.extension().is_some_and(|e| e == "toml") && stem.extension().is_none()
-    });
+    files.retain(|path| path.extension().is_some_and(|e| e == "toml"));
     files.sort();
     files
 }
 
-/// The scenes, each under every estimator; what is refused is named.
-fn tasks(adapter: &Adapter) -> Vec<(String, Scene)> {
-    let scenes = options::root().join("scenes");
-    let files = [scene_files(&scenes), scene_files(&scenes.join("hard"))].concat();
-    let mut tasks = Vec::new();
-    for path in files {
-        let name = path.strip_prefix(options::root()).unwrap_or(&path).display().to_string();
-        let scene = match loaded(&path) {
-            Ok(scene) => scene,
+/// The scenes, by name; what is refused is named.
+fn scenes() -> Vec<(String, Scene)> {
+    let folder = options::root().join("scenes");
+    let files = [scene_files(&folder), scene_files(&folder.join("hard"))].concat();
+    let named = |path: &PathBuf| {
+        let name = path.strip_prefix(options::root()).unwrap_or(path).display().to_string();
+        match loaded(path) {
+            Ok(scene) => Some((name, scene)),
             Err(error) => {
                 refused(&name, &error);
-                continue;
+                None
             }
-        };
+        }
+    };
+    let swept = sweep::cases().expect("the classic scene is valid").into_iter();
+    let swept = swept.map(|case| (format!("{} {}", case.group, case.value), case.scene));
+    files.iter().filter_map(named).chain(swept).collect()
+}
+
+/// Each scene under every estimator that takes it.
+fn tasks(adapter: &Adapter) -> Vec<(String, Scene)> {
+    let mut tasks = Vec::new();
+    for (name, scene) in scenes() {
         for estimator in Estimator::ALL {
             let settings = scene.settings().with_estimator(estimator);
             let scene = scene.clone().with_settings(settings);
