@@ -14,16 +14,16 @@ WALL_RADIUS = 100.0
 WALLS_FROM = 1e4
 
 
-def classic():
-    """The scene file as a dictionary, with walls of WALL_RADIUS in the same places."""
+def classic(wall_radius=WALL_RADIUS):
+    """The scene file as a dictionary, with walls of this radius in the same places."""
     text = (ROOT / "scenes" / "two-spheres.toml").read_text(encoding="utf-8")
     scene = copy.deepcopy(tomllib.loads(text))
     for sphere in scene["spheres"]:
         if sphere["radius"] >= WALLS_FROM:
-            shrink = sphere["radius"] - WALL_RADIUS
+            shrink = sphere["radius"] - wall_radius
             # The one coordinate that is not zero points from the room to the centre.
             sphere["center"] = [moved(x, shrink) for x in sphere["center"]]
-            sphere["radius"] = WALL_RADIUS
+            sphere["radius"] = wall_radius
     return scene
 
 
