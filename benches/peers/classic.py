@@ -10,6 +10,9 @@ ROOT = Path(__file__).resolve().parents[2]
 # Mitsuba meets spheres in f32 as they stand: at 1e4 a quarter of the light is gone.
 WALL_RADIUS = 100.0
 
+# Walls of this radius stand for planes: over the room they stray by 4e-8 from one.
+PLANES = 1e9
+
 # A sphere at least this large is a wall.
 WALLS_FROM = 1e4
 

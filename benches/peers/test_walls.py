@@ -9,7 +9,7 @@ import unittest
 
 import numpy
 
-from classic import classic
+from classic import PLANES, classic
 from mean import Mean
 from walls import AGREES, LARGEST_OBJECT, RENDERS, median_distance
 
@@ -42,7 +42,7 @@ class Bias(unittest.TestCase):
 
 class Walls(unittest.TestCase):
     def test_stay_where_they_are(self):
-        for radius in (1e2, 1e6):
+        for radius in (1e2, 1e6, PLANES):
             walls = [s for s in classic(radius)["spheres"] if s["radius"] > LARGEST_OBJECT]
             # The nearest points of the walls to the middle of the room.
             places = [math.hypot(*s["center"]) - s["radius"] for s in walls]

@@ -18,12 +18,13 @@ from dataclasses import dataclass
 import numpy
 
 from candor_peer import Candor
-from classic import classic
+from classic import PLANES, classic
 from machine import keep_to_cores, processor, system, tell
 from mean import Mean
 
-# As the sweep of `candor verify --hard` names them, with their radii.
-RADII = {"1e2": 1e2, "1e3": 1e3, "1e4": 1e4, "1e5": 1e5, "1e6": 1e6}
+# As the sweep of `candor verify --hard` names them, with their radii. Mitsuba has squares for
+# the planes: the control, since nothing else is another there.
+RADII = {"1e2": 1e2, "1e3": 1e3, "1e4": 1e4, "1e5": 1e5, "1e6": 1e6, "planes": PLANES}
 
 # Everything of the scene that is no wall is smaller.
 LARGEST_OBJECT = 10.0
