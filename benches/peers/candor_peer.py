@@ -25,13 +25,14 @@ class Candor:
         """Name and version, as the program tells them."""
         return self.call("--version").strip()
 
-    def render(self, estimator, spp, seed, quiet=True):
+    def render(self, estimator, spp, seed, quiet=True, device="gpu"):
         """An image; its seconds are the program's own, with the kernel's compilation.
 
-        Without `quiet` the program looks at its error while it renders, as for a user.
+        `device` is what renders; "cpu" is the f64 twin. Without `quiet` the program looks
+        at its error while it renders, as for a user.
         """
         options = ["--estimator", estimator, "--spp", str(spp), "--seed", str(seed)]
-        options += ["--threads", str(self.threads), "--device", "gpu", "--json", "--force"]
+        options += ["--threads", str(self.threads), "--device", device, "--json", "--force"]
         options += ["--quiet"] if quiet else []
         told = json.loads(self.call("render", str(self.scene), *options, "-o", str(self.film)))
         self.device = f"{told['device']}, {told['driver']}"

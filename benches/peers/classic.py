@@ -10,20 +10,23 @@ ROOT = Path(__file__).resolve().parents[2]
 # Mitsuba meets spheres in f32 as they stand: at 1e4 a quarter of the light is gone.
 WALL_RADIUS = 100.0
 
+# Walls of this radius stand for planes: over the room they stray by 4e-8 from one.
+PLANES = 1e9
+
 # A sphere at least this large is a wall.
 WALLS_FROM = 1e4
 
 
-def classic():
-    """The scene file as a dictionary, with walls of WALL_RADIUS in the same places."""
+def classic(wall_radius=WALL_RADIUS):
+    """The scene file as a dictionary, with walls of this radius in the same places."""
     text = (ROOT / "scenes" / "two-spheres.toml").read_text(encoding="utf-8")
     scene = copy.deepcopy(tomllib.loads(text))
     for sphere in scene["spheres"]:
         if sphere["radius"] >= WALLS_FROM:
-            shrink = sphere["radius"] - WALL_RADIUS
+            shrink = sphere["radius"] - wall_radius
             # The one coordinate that is not zero points from the room to the centre.
             sphere["center"] = [moved(x, shrink) for x in sphere["center"]]
-            sphere["radius"] = WALL_RADIUS
+            sphere["radius"] = wall_radius
     return scene
 
 

@@ -8,16 +8,13 @@ cannot be compared; 2 something is missing; 130 interrupted.
 import argparse
 import datetime
 import os
-import platform
 import sys
 import tempfile
 import time
 
 import tables
 from classic import WALL_RADIUS, classic
-
-# The comparison is about so many cores, wherever it runs.
-CORES = 2
+from machine import keep_to_cores, processor, system, tell
 
 # Settings of Mitsuba's stratified sampler: strata of a pixel, and passes. Powers of four
 # are much its fastest; 361 is 19 by 19.
@@ -64,13 +61,6 @@ def positive(text):
     return int(text)
 
 
-def keep_to_cores():
-    """Keeps this process and its children to the first cores; how many there are."""
-    cores = sorted(os.sched_getaffinity(0))[:CORES]
-    os.sched_setaffinity(0, cores)
-    return len(cores)
-
-
 def start(folder, threads):
     """Both renderers, and the time that each takes to its first image, cold."""
     from candor_peer import Candor
@@ -115,10 +105,6 @@ def measured(candor, mitsuba, seconds, turns, rungs, quick):
     return comparison
 
 
-def tell(text):
-    print(f"{datetime.datetime.now():%H:%M:%S} {text}", file=sys.stderr, flush=True)
-
-
 def heading(candor, threads, turns, minutes):
     """What was compared, where and when."""
     import drjit
@@ -136,17 +122,6 @@ def heading(candor, threads, turns, minutes):
         f"LLVM {llvm}; {datetime.date.today()}.",
         "",
     ]
-
-
-def processor():
-    """The processor's name as Linux tells it."""
-    with open("/proc/cpuinfo", encoding="utf-8") as lines:
-        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
-
-
-def system():
-    return platform.freedesktop_os_release()["PRETTY_NAME"]
 
 
 def report(comparison, found, head, starts):

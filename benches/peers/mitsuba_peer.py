@@ -7,6 +7,7 @@ import drjit
 import mitsuba
 import numpy
 
+from classic import PLANES
 from image import Image
 
 # Dr.Jit's index of a sample has 32 bits; more samples than this go in several passes.
@@ -17,6 +18,10 @@ PASSES_MOST = 1000
 
 # Paths end by chance from this depth on: never.
 NO_ROULETTE = 1000
+
+# Squares in place of planes reach so far. What is beyond gets less than 1e-5 of the light
+# that the room gets, which falls with the square of the distance.
+REACH = 1000.0
 
 
 class PhongLobe(mitsuba.BSDF):
@@ -159,7 +164,7 @@ def camera(scene, sampler, spp):
 
 def shape(sphere, materials):
     """A sphere. Lights reflect nothing in candor; in Mitsuba they do unless told."""
-    made = {"type": "sphere", "center": sphere["center"], "radius": sphere["radius"]}
+    made = surface(sphere)
     if "emission" in sphere:
         black = {"type": "diffuse", "reflectance": rgb([0.0, 0.0, 0.0])}
         light = {"type": "area", "radiance": rgb(sphere["emission"])}
@@ -173,6 +178,21 @@ def shape(sphere, materials):
         "exponent": material["exponent"],
     }
     return made | {"bsdf": lobe}
+
+
+def surface(sphere):
+    """A sphere, or a square in place of one that stands for a plane."""
+    center, radius = numpy.array(sphere["center"]), sphere["radius"]
+    if radius < PLANES:
+        return {"type": "sphere", "center": sphere["center"], "radius": radius}
+    away = numpy.linalg.norm(center)
+    inwards = -center / away
+    middle = (radius - away) * inwards
+    along = [0.0, 1.0, 0.0] if abs(inwards[1]) < 0.5 else [0.0, 0.0, 1.0]
+    place = mitsuba.ScalarTransform4f().look_at(
+        origin=middle.tolist(), target=(middle + inwards).tolist(), up=along
+    )
+    return {"type": "rectangle", "to_world": place.scale([REACH, REACH, 1.0])}
 
 
 def rgb(values):
