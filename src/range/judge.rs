@@ -1,26 +1,37 @@
-//! What of a scene is too small beside its coordinates.
+//! What of a scene is too small, too near or too nearly the same beside its coordinates.
 
 use super::Arithmetic;
 use super::pairs::{TooManyPairs, visit_close_pairs};
+use super::touch::{Coordinates, Touch, touch};
 use crate::scene::{Scene, Sphere, Surface};
-use crate::viewpoint::Viewpoint;
+use crate::viewpoint::{Viewpoint, corner_angle};
 use glam::DVec3;
 
 /// A sphere by itself is seen true down to this share of the reach of its coordinates, in
 /// `f32`. Miss distances are off by some u of the reach, in both directions; the area seen
 /// changes by the square of their ratio to the radius.
-const SMALLEST: f64 = 4e-6;
+pub(super) const SMALLEST: f64 = 4e-6;
 
-/// What touches something, sticks out of something or fills the picture must be larger
-/// than this share of the reach, in `f32`: there, a shift by u of the reach changes what is
-/// seen by its ratio to the size.
-const FINEST: f64 = 1e-4;
+/// A sphere that touches another, or nearly, must be larger than this share of the reach, in
+/// `f32`: a shift by u of the reach changes what one throws on the other by its ratio to the
+/// size.
+pub(super) const CLOSE: f64 = 4e-5;
+
+/// What sticks out of something or fills the picture must be larger than this share.
+pub(super) const FINEST: f64 = 1e-4;
+
+/// How far two positions together are off, of the reach, in `f32`: 2u.
+pub(super) const ERROR: f64 = 1.2e-7;
+
+/// Share of the picture by which a rim may be seen off.
+pub(super) const MOVED: f64 = 5e-4;
+
+/// A rim for which this field of view would be too narrow, in radians, is one of a sphere
+/// that is too near.
+const NARROW: f64 = 0.1;
 
 /// How much finer `f64` is than `f32`.
 const DOUBLE: f64 = 1.0 / (1 << 29) as f64;
-
-/// Spheres are tangent if they are so up to this share of their distance and radius.
-const TANGENT: f64 = 16.0 * f64::EPSILON;
 
 /// What is too small, and the size from which on it would not be.
 pub(super) enum Fault<'a> {
@@ -30,6 +41,10 @@ pub(super) enum Fault<'a> {
     Close { small: &'a Sphere, large: &'a Sphere, limit: f64 },
     /// The part of a sphere that another one does not hide.
     Hidden { small: &'a Sphere, large: &'a Sphere, limit: f64 },
+    /// The gap between two surfaces that lie side by side.
+    Coincident { small: &'a Sphere, large: &'a Sphere, limit: f64 },
+    /// The camera's height over a sphere.
+    Near { sphere: &'a Sphere, height: f64, limit: f64 },
     /// Too many spheres overlap for all pairs to be looked at.
     Crowded { sphere: &'a Sphere },
     /// The field of view, in degrees.
@@ -43,22 +58,44 @@ pub(super) struct Judge<'a> {
     arithmetic: Arithmetic,
     /// Numbers of the spheres that hold the camera.
     inside: Vec<usize>,
+    /// How far from the focus rays may start: the extent, or the far side of the smallest
+    /// wall around the camera.
+    rays_from: f64,
 }
 
 impl<'a> Judge<'a> {
     pub(super) fn new(scene: &'a Scene, viewpoint: &'a Viewpoint, arithmetic: Arithmetic) -> Self {
         let sides = scene.spheres().iter().zip(viewpoint.inside());
-        let inside = sides.filter_map(|(s, &inside)| inside.then_some(s.ordinal())).collect();
-        Self { scene, viewpoint, arithmetic, inside }
+        let around = || sides.clone().filter_map(|(s, &inside)| inside.then_some(s));
+        let enclosing = around()
+            .filter(|sphere| !matches!(sphere.surface(), Surface::Emitter(_)))
+            .map(|sphere| sphere.center().distance(viewpoint.focus()) + sphere.radius())
+            .reduce(f64::min);
+        Self {
+            scene,
+            viewpoint,
+            arithmetic,
+            inside: around().map(Sphere::ordinal).collect(),
+            rays_from: enclosing.unwrap_or(0.0).max(viewpoint.extent()),
+        }
     }
 
-    /// The first fault: of spheres by themselves, then of pairs, then of the picture.
+    /// The first fault: of spheres by themselves, then of pairs, then of the camera.
     pub(super) fn first(&self) -> Option<Fault<'a>> {
-        self.too_small().or_else(|| self.first_pair()).or_else(|| self.too_narrow())
+        self.too_small()
+            .or_else(|| self.first_pair())
+            .or_else(|| self.too_near())
+            .or_else(|| self.too_narrow())
     }
 
     fn too_small(&self) -> Option<Fault<'a>> {
-        let limit = |sphere| self.share(SMALLEST) * self.reach(sphere);
+        let limit = |sphere: &Sphere| {
+            let reach = match self.arithmetic {
+                Arithmetic::Single => self.reach(sphere).max(self.rays_from),
+                Arithmetic::Double => self.reach(sphere),
+            };
+            self.share(SMALLEST) * reach
+        };
         let small = self.scene.spheres().iter().find(|sphere| sphere.radius() < limit(sphere))?;
         Some(Fault::Small { sphere: small, limit: limit(small) })
     }
@@ -84,29 +121,53 @@ impl<'a> Judge<'a> {
 
     /// Two spheres that touch, overlap or nearly do.
     fn judge_pair(&self, small: &'a Sphere, large: &'a Sphere) -> Option<Fault<'a>> {
-        let away = small.center() - large.center();
-        let distance = away.length();
-        let outermost = small.radius() / distance.max(f64::MIN_POSITIVE) * away;
-        // How far the small one reaches out of the large one, and how far in; and how fine
-        // that is resolved where it does.
-        let out = distance - (large.radius() - small.radius());
-        let into = large.radius() + small.radius() - distance;
-        let out_limit = self.finest(small, large, small.center() + outermost);
-        let in_limit = self.finest(small, large, small.center() - outermost);
-        let limit = out_limit.max(in_limit);
-        if small.radius() < limit {
-            let apart = into < -limit || out < -limit;
-            return (!apart).then_some(Fault::Close { small, large, limit });
+        let inside = [small, large].map(|sphere| self.inside.contains(&sphere.ordinal()));
+        match touch(small, large, inside, self)? {
+            Touch::Close(limit) => Some(Fault::Close { small, large, limit }),
+            Touch::Hidden(limit) => Some(Fault::Hidden { small, large, limit }),
+            Touch::Coincident(limit) => Some(Fault::Coincident { small, large, limit }),
         }
-        // From inside, what is outside of the large one is the hidden part. A lamp that is
-        // hidden altogether must be so by more than rounding, or it would shine through.
-        let inside = self.inside.contains(&large.ordinal());
-        let (shown, limit) = if inside { (into, in_limit) } else { (out, out_limit) };
-        let hidden = match small.surface() {
-            Surface::Emitter(_) => -limit * (SMALLEST / FINEST),
-            _ => TANGENT * (distance + large.radius()),
+    }
+
+    /// The rim of a sphere in the picture is seen off by the error of the camera's place over
+    /// the rim's distance, √(h(h + 2r)) at the height h. A camera on a sphere sees no rim.
+    fn too_near(&self) -> Option<Fault<'a>> {
+        if self.viewpoint.approach() > 0.0 {
+            return None;
+        }
+        self.scene.spheres().iter().filter(|s| self.shows_rim(s)).find_map(|s| self.rim_fault(s))
+    }
+
+    fn rim_fault(&self, sphere: &'a Sphere) -> Option<Fault<'a>> {
+        let camera = self.scene.camera();
+        let (fov, radius) = (camera.vertical_fov(), sphere.radius());
+        let height = camera.position().distance(sphere.center()) - radius;
+        let reach = match self.arithmetic {
+            Arithmetic::Single => self.reach_at(camera.position()),
+            Arithmetic::Double => self.reach(sphere),
         };
-        (hidden < shown && shown < limit).then_some(Fault::Hidden { small, large, limit })
+        let error = self.share(ERROR) * reach;
+        let rim = (height * (height + 2.0 * radius)).max(0.0).sqrt();
+        let needed = error / (MOVED * rim);
+        if height <= DOUBLE * error || fov >= needed {
+            return None;
+        }
+        if needed < NARROW {
+            return Some(Fault::Narrow { degrees: fov.to_degrees(), limit: needed.to_degrees() });
+        }
+        let rim = error / (MOVED * fov);
+        let limit = rim * rim / (radius.hypot(rim) + radius);
+        Some(Fault::Near { sphere, height, limit })
+    }
+
+    /// Whether the camera is outside of the sphere and its rim crosses the picture.
+    fn shows_rim(&self, sphere: &Sphere) -> bool {
+        let camera = self.scene.camera();
+        let to_center = sphere.center() - camera.position();
+        let off_axis = to_center.angle_between(camera.forward());
+        let rim = (sphere.radius() / to_center.length()).min(1.0).asin();
+        let outside = !self.inside.contains(&sphere.ordinal());
+        outside && (off_axis - rim).abs() <= corner_angle(self.scene)
     }
 
     /// A picture narrower than the finest detail would show what is beside it.
@@ -116,7 +177,7 @@ impl<'a> Judge<'a> {
         let distance = camera.position().distance(focus).max(extent);
         let start = camera.position() + self.viewpoint.approach() * camera.forward();
         let reach = match self.arithmetic {
-            Arithmetic::Single => extent + start.distance(focus),
+            Arithmetic::Single => self.reach_at(start),
             Arithmetic::Double => camera.position().length() + focus.length() + extent,
         };
         let finest = self.share(FINEST) * reach;
@@ -125,12 +186,15 @@ impl<'a> Judge<'a> {
         (degrees < limit).then_some(Fault::Narrow { degrees, limit })
     }
 
+    /// Size of the coordinates that meet at a point, on a device.
+    fn reach_at(&self, point: DVec3) -> f64 {
+        point.distance(self.viewpoint.focus()) + self.viewpoint.extent()
+    }
+
     /// Size of the coordinates that meet at a sphere, in scene units.
     fn reach(&self, sphere: &Sphere) -> f64 {
         let around = match self.arithmetic {
-            Arithmetic::Single => {
-                sphere.center().distance(self.viewpoint.focus()) + self.viewpoint.extent()
-            }
+            Arithmetic::Single => self.reach_at(sphere.center()),
             Arithmetic::Double => {
                 sphere.center().length() + self.scene.camera().position().length()
             }
@@ -145,17 +209,32 @@ impl<'a> Judge<'a> {
             Arithmetic::Double => single * DOUBLE,
         }
     }
+}
 
-    /// The finest detail that is resolved at a point where two spheres meet. A device computes
-    /// with that point; the twin's centre form loses digits to both spheres.
-    fn finest(&self, small: &Sphere, large: &Sphere, point: DVec3) -> f64 {
+impl Coordinates for Judge<'_> {
+    fn step(&self, share: f64, small: &Sphere, large: &Sphere, point: DVec3) -> f64 {
+        // A device computes with the point itself; the twin's centre form loses digits to
+        // both spheres.
         let reach = match self.arithmetic {
             Arithmetic::Single => {
-                let extent = self.viewpoint.extent();
-                point.distance(self.viewpoint.focus()) + extent + small.radius().min(extent)
+                self.reach_at(point) + small.radius().min(self.viewpoint.extent())
             }
             Arithmetic::Double => self.reach(small) + self.reach(large),
         };
-        self.share(FINEST) * reach
+        self.share(share) * reach
+    }
+
+    fn focus(&self) -> DVec3 {
+        self.viewpoint.focus()
+    }
+
+    fn extent(&self) -> f64 {
+        self.viewpoint.extent()
+    }
+
+    fn width(&self) -> f64 {
+        let camera = self.scene.camera();
+        let distance = camera.position().distance(self.focus()).max(self.extent());
+        (2.0 * (camera.vertical_fov() / 2.0).tan() * distance).min(self.extent())
     }
 }

@@ -7,6 +7,7 @@
 
 mod judge;
 mod pairs;
+mod touch;
 
 use crate::scene::Scene;
 use crate::viewpoint::Viewpoint;
@@ -26,8 +27,8 @@ impl Arithmetic {
     /// trouble with huge spheres.
     fn other(self) -> (Self, &'static str) {
         match self {
-            Self::Single => (Self::Double, "--device cpu takes this scene"),
-            Self::Double => (Self::Single, "a device takes this scene"),
+            Self::Single => (Self::Double, "`candor render --device cpu` takes this scene"),
+            Self::Double => (Self::Single, "`candor render` takes this scene on a device"),
         }
     }
 
@@ -100,6 +101,23 @@ fn explain(fault: &Fault<'_>, arithmetic: Arithmetic) -> OutOfRange {
             Some(small),
             format!("is hidden by {} but for a part too small for {precision}", large.title()),
             format!("move it through that surface, either way, by more than {}", short(limit)),
+        ),
+        Fault::Coincident { small, large, limit } => (
+            Some(small),
+            format!(
+                "lies so close to the surface of {} that {precision} cannot tell which is seen",
+                large.title()
+            ),
+            format!("they must be {} or more apart", short(limit)),
+        ),
+        Fault::Near { sphere, height, limit } => (
+            Some(sphere),
+            format!("is too near to the camera for {precision}"),
+            format!(
+                "the camera is {} above it; here it takes {} or more, or exactly 0",
+                short(height),
+                short(limit)
+            ),
         ),
         Fault::Crowded { sphere } => (
             Some(sphere),

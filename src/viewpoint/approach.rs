@@ -21,8 +21,9 @@ pub(super) fn approach(scene: &Scene, inside: &[bool], extent: f64) -> f64 {
     if nearest.is_finite() { (half_angle.cos() * nearest - extent).max(0.0) } else { 0.0 }
 }
 
-/// The angle between the view axis and the picture's corners.
-fn corner_angle(scene: &Scene) -> f64 {
+/// The angle between the view axis and the picture's corners, in radians.
+#[must_use]
+pub fn corner_angle(scene: &Scene) -> f64 {
     let half_height = (scene.camera().vertical_fov() / 2.0).tan();
     let size = scene.size();
     let half_width = half_height * f64::from(size.width()) / f64::from(size.height());

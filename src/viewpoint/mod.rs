@@ -8,6 +8,8 @@
 
 mod approach;
 
+pub use approach::corner_angle;
+
 use crate::scene::{Camera, Scene, Sphere};
 use glam::DVec3;
 
@@ -35,7 +37,9 @@ impl Viewpoint {
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let (low, high) = bounds(scene);
-        let extent = ((high - low).length() / 2.0).max(f64::MIN_POSITIVE);
+        let half_diagonal = (high - low).length() / 2.0;
+        // Where there is no sphere, any length will do.
+        let extent = if half_diagonal > 0.0 { half_diagonal } else { 1.0 };
         let (camera, focus) = (scene.camera(), low.midpoint(high));
         let inside: Vec<bool> = scene.spheres().iter().map(|s| sees_inside(camera, s)).collect();
         let is_far = camera.position().distance(focus) > FAR * extent;
