@@ -30,7 +30,8 @@ fn connect(point: SurfacePoint, sphere: u32, incoming: vec3<f32>, u: vec2<f32>,
     let ray = Ray(point.position, direction);
     let distance = seen_distance(light_quadratic(pick.light, ray), pick.light);
     let blocked = occluded(ray, sphere, pick.light, distance);
-    return select(share, 0.0, blocked || !samples_light_at(sphere)) * scene.spheres[pick.light].color;
+    let light = select(share, 0.0, blocked || !samples_light_at(sphere)) * scene.spheres[pick.light].color;
+    return select(no_direction(direction), light, is_direction(direction));
 }
 
 struct Path {

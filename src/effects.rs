@@ -5,7 +5,6 @@ use crate::viewpoint::Viewpoint;
 
 /// The effects that a scene calls for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "each effect is there or it is not")]
 pub struct Effects {
     /// Some surface is diffuse.
     pub diffuse: bool,
@@ -13,13 +12,11 @@ pub struct Effects {
     pub glossy: bool,
     /// The camera is inside a sphere, whose inner side is then seen.
     pub interior: bool,
-    /// The camera is so far away that rays start nearer to the scene.
-    pub far_camera: bool,
 }
 
 impl Effects {
     /// Every effect there is: what the general kernel is composed of.
-    pub const ALL: Self = Self { diffuse: true, glossy: true, interior: true, far_camera: true };
+    pub const ALL: Self = Self { diffuse: true, glossy: true, interior: true };
 
     /// Derives the effects from a scene.
     #[must_use]
@@ -30,7 +27,6 @@ impl Effects {
             diffuse: any(|s| matches!(s, Surface::Diffuse(_))),
             glossy: any(|s| matches!(s, Surface::Glossy(..))),
             interior: viewpoint.inside().contains(&true),
-            far_camera: viewpoint.approach() > 0.0,
         }
     }
 }

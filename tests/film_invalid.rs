@@ -143,10 +143,28 @@ fn a_direction_that_is_none_is_an_invalid_sample() {
             let (_, ledger) = trace(&mut with_kernel(&scene, &kernel), &[0..8]);
             let told = ledger.records.iter().all(|r| r.pixel == 58 && r.reason == reason);
             assert!(ledger.count == 8 && told, "{name}, {}: {ledger:?}", estimator.name());
-            let blind = kernel.replace(from, "if false {");
+            let blind = kernel
+                .replace(from, "if false {")
+                .replace("light, is_direction(direction));", "light, true);");
             let (_, ledger) = trace(&mut with_kernel(&scene, &blind), &[0..8]);
             assert!(ledger.count < 8, "{name}, {}, unchecked: {ledger:?}", estimator.name());
         }
+    }
+}
+
+/// So are directions to sampled lights.
+#[test]
+fn a_direction_to_a_light_that_is_none_is_an_invalid_sample() {
+    use candor::scene::Estimator::{Explicit, Mis};
+    for estimator in [Explicit, Mis] {
+        let scene = scene();
+        let scene = scene.clone().with_settings(scene.settings().with_estimator(estimator));
+        let from = "around(cone.axis, polar_cone(u.x, cone.height), u.y)";
+        let to = format!("select(1.0, 0.0, key.pixel == 58u) * {from}");
+        let (_, ledger) = trace(&mut mutant(&scene, from, &to), &[0..64]);
+        let told =
+            ledger.records.iter().all(|r| r.pixel == 58 && r.reason == InvalidReason::Negative);
+        assert!(ledger.count > 32 && told, "{}: {ledger:?}", estimator.name());
     }
 }
 

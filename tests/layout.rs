@@ -273,7 +273,7 @@ fn every_composition_is_valid() {
         for nearest in std::iter::once(&Nearest::Loop).chain(&searches) {
             for flags in 0..8 {
                 let [diffuse, glossy, interior] = [1, 2, 4].map(|flag| flags & flag != 0);
-                let effects = Effects { diffuse, glossy, interior, far_camera: turn % 5 == 0 };
+                let effects = Effects { diffuse, glossy, interior };
                 let nearest = nearest.clone();
                 // The estimators and kinds of lights take turns over the compositions.
                 let estimator = Estimator::ALL[turn % 4];

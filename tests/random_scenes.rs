@@ -3,10 +3,11 @@
 //!
 //! Both trace the same random numbers, so that a path differs only by rounding, or where
 //! rounding sends it elsewhere. Such a parting may change a sample by as much as a sample can
-//! be, and no variance is known beforehand. But where neither tracer is biased its sign is a
-//! coin's, and then, however the sizes are spread, the differences d of independent pixels have
+//! be, and no variance is known beforehand. If a parting is as likely to gain as to lose the same
+//! amount, then, however the sizes are spread, the differences d of independent pixels have
 //! P(|Σd| ≥ x√Σd²) ≤ 2exp(−x²/2) (Efron 1969, *JASA* 64:1278, from Hoeffding's inequality for
-//! signs). A scene in the declared range fails where |Σd| exceeds that and the bias that `verify` grants a device.
+//! signs). That symmetry is an assumption: rounding that falls either way has it, and a mean of
+//! zero alone is not enough. A scene in the declared range fails where |Σd| exceeds that and the bias that `verify` grants a device.
 
 #![expect(clippy::cast_precision_loss, reason = "exact sums become statistics")]
 

@@ -217,8 +217,8 @@ fn a_fault_shows_at_its_vertex() {
             at(2, Cause::Direction),
         ),
         (
-            "return Ray(camera_point(offset), normalize(scene.forward + offset));",
-            "return Ray(camera_point(offset), normalize(scene.forward + offset.yzx));",
+            "normalize(scene.forward + offset));",
+            "normalize(scene.forward + offset.yzx));",
             at(0, Cause::Direction),
         ),
         (

@@ -250,11 +250,6 @@ impl Kernel {
             (false, true) => fragment!("scatter_glossy"),
             (_, false) => fragment!("scatter_diffuse"),
         };
-        let camera = if self.effects.far_camera {
-            fragment!("camera_far")
-        } else {
-            fragment!("camera_near")
-        };
         let constants = format!(
             "const WIDTH: u32 = {}u;\nconst HEIGHT: u32 = {}u;\nconst BOUNCES: u32 = {}u;\n",
             self.size.width(),
@@ -274,7 +269,6 @@ impl Kernel {
             fragment!("material"),
             diffuse,
             scatter,
-            camera,
             fragment!("trace"),
         ]
         .map(str::to_owned)

@@ -18,6 +18,9 @@ pub const RESOLVED: f64 = 2.5e-4;
 const FIRST: u64 = 256;
 const MOST: u64 = 1 << 16;
 
+/// Level of one channel at one of the nine looks of a row.
+const LEVEL: f64 = ALPHA / 27.0;
+
 /// Pixels along a side of the pictures.
 const SIDE: u32 = 64;
 
@@ -55,13 +58,13 @@ impl Row {
     /// Whether the bias is within its limit, and no sample was invalid.
     #[must_use]
     pub fn is_right(&self) -> bool {
-        self.invalid == 0 && self.is_resolved() && self.paired.is_within(MAX_BIAS, ALPHA)
+        self.invalid == 0 && self.is_resolved() && self.paired.is_within(MAX_BIAS, LEVEL)
     }
 
     /// Whether it certainly is not.
     #[must_use]
     pub fn is_wrong(&self) -> bool {
-        self.invalid > 0 || self.paired.exceeds(MAX_BIAS, ALPHA)
+        self.invalid > 0 || self.paired.exceeds(MAX_BIAS, LEVEL)
     }
 }
 

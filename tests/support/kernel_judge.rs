@@ -8,7 +8,9 @@ use super::tracers::{film, kernel, trace, twin, with_kernel};
 use candor::estimate::pair;
 use candor::film::Film;
 use candor::scene::{Estimator, Scene};
+use candor::tracer::Tracer;
 use candor::verify::{ALPHA, MAX_BIAS};
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// What tells a wrong kernel from the right one.
@@ -119,22 +121,24 @@ impl Judge {
     pub fn accepts(self, estimator: Estimator, change: &dyn Fn(&str) -> String) -> bool {
         let scene = self.scene_under(estimator);
         let mut tracer = with_kernel(&scene, &change(&kernel(&scene)));
+        let again = |scene: &Scene| with_kernel(scene, &change(&kernel(scene)));
         match self {
-            Self::Shell => is_exactly(&film(&mut tracer, &[0..300]), SHELL, 300),
-            Self::Coincident => {
-                let centre = film(&mut tracer, &[0..64]);
-                is_exactly(&only(&centre, 7), [3.0; 3], 64)
+            Self::Shell => {
+                valid(&mut tracer, &[0..300]).is_some_and(|f| is_exactly(&f, SHELL, 300))
             }
+            Self::Coincident => valid(&mut tracer, &[0..64])
+                .is_some_and(|centre| is_exactly(&only(&centre, 7), [3.0; 3], 64)),
             Self::Divisions => {
                 let edge = 1_u64 << 32;
-                let whole = film(&mut tracer, &[edge - 9..edge + 32]);
-                let mut again = with_kernel(&scene, &change(&kernel(&scene)));
-                whole == film(&mut again, &[edge..edge + 32, edge - 9..edge])
+                let whole = valid(&mut tracer, &[edge - 9..edge + 32]);
+                let parts = valid(&mut again(&scene), &[edge..edge + 32, edge - 9..edge]);
+                whole.is_some() && whole == parts
             }
             Self::Seeds => {
-                let other = with_seed(&scene, 1);
-                let mut other = with_kernel(&other, &change(&kernel(&other)));
-                film(&mut tracer, &[0..16]).pixels() != film(&mut other, &[0..16]).pixels()
+                let ours = valid(&mut tracer, &[0..16]);
+                let other = valid(&mut again(&with_seed(&scene, 1)), &[0..16]);
+                let pixels = |film: Option<Film>| film.map(|film| film.pixels().to_vec());
+                ours.is_some() && pixels(ours) != pixels(other)
             }
             _ => {
                 let (found, ledger) = trace(&mut tracer, &[0..256]);
@@ -150,6 +154,12 @@ impl Judge {
         let scene = self.scene_under(estimator);
         FILMS[self as usize][estimator as usize].get_or_init(|| film(&mut twin(&scene), &[0..256]))
     }
+}
+
+/// The film of samples that are all valid.
+fn valid(tracer: &mut dyn Tracer, ranges: &[Range<u64>]) -> Option<Film> {
+    let (film, ledger) = trace(tracer, ranges);
+    (ledger.count == 0).then_some(film)
 }
 
 /// One pixel of a film as a film.
