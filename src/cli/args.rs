@@ -136,7 +136,7 @@ pub(super) struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
-    /// Scene file (TOML).
+    /// Scene file (TOML); or give --hard.
     #[arg(required_unless_present = "hard")]
     pub scene: Option<PathBuf>,
     /// Check the hard cases in place of a scene: the classic scene with huge walls, far away,

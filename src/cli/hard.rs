@@ -39,20 +39,39 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     };
     let cases = cases()?;
     let shown = Shown::new(common.quiet, cases.len() * estimators.len());
-    let mut lines = Vec::new();
-    for case in &cases {
-        for &estimator in estimators.iter().filter(|e| case.suits(**e)) {
-            shown.tell(case, estimator);
-            match measure(case, estimator, &on_device, &on_twin, interrupt)? {
-                Some(row) => lines.push(Line { case, estimator, row }),
-                None => return Ok(INTERRUPTED),
-            }
-        }
+    let rows = cases.iter().flat_map(|case| {
+        estimators.iter().filter(|e| case.suits(**e)).map(move |&estimator| (case, estimator))
+    });
+    let mut table = Table { lines: Vec::new(), interrupted: false };
+    for (case, estimator) in rows {
+        shown.tell(case, estimator);
+        let Some(row) = measure(case, estimator, &on_device, &on_twin, interrupt)? else {
+            table.interrupted = true;
+            break;
+        };
+        table.lines.push(Line { case, estimator, row });
     }
     shown.finish();
-    let report = if common.json { json(&lines, &device) } else { text(&lines, &device) };
+    let report = if common.json { json(&table, &device) } else { text(&table, &device) };
     streams::results(&report)?;
-    Ok(if lines.iter().all(|line| line.row.is_right()) { DONE } else { FAILED })
+    Ok(match table {
+        Table { interrupted: true, .. } => INTERRUPTED,
+        _ if table.agrees() => DONE,
+        _ => FAILED,
+    })
+}
+
+/// What was measured.
+struct Table<'a> {
+    lines: Vec<Line<'a>>,
+    /// Whether rows are missing.
+    interrupted: bool,
+}
+
+impl Table<'_> {
+    fn agrees(&self) -> bool {
+        !self.interrupted && self.lines.iter().all(|line| line.row.is_right())
+    }
 }
 
 /// Progress: a bar on a terminal, nothing elsewhere.
@@ -95,7 +114,8 @@ fn verdict(row: &Row) -> &'static str {
     }
 }
 
-fn text(lines: &[Line<'_>], device: &Description) -> String {
+fn text(table: &Table<'_>, device: &Description) -> String {
+    let lines = &table.lines;
     let mut out = vec![
         format!("device    {} ({})", device.device, device.driver),
         "bias of the image mean against the f64 twin, device - twin, in millionths of it; same"
@@ -120,7 +140,9 @@ fn text(lines: &[Line<'_>], device: &Description) -> String {
         ));
     }
     let right = lines.iter().filter(|line| line.row.is_right()).count();
-    let reading = if right == lines.len() {
+    let reading = if table.interrupted {
+        format!("interrupted; the device agrees with the twin in {right} of {} rows", lines.len())
+    } else if right == lines.len() {
         format!("the device agrees with the twin in all {right} rows")
     } else {
         format!("THE DEVICE FAILS in {} of {} rows", lines.len() - right, lines.len())
@@ -140,6 +162,7 @@ struct Json<'a> {
     device: &'a str,
     driver: &'a str,
     agrees: bool,
+    interrupted: bool,
     bias_limit: f64,
     rows: Vec<JsonRow<'a>>,
 }
@@ -171,13 +194,14 @@ impl<'a> JsonRow<'a> {
     }
 }
 
-fn json(lines: &[Line<'_>], device: &Description) -> String {
+fn json(table: &Table<'_>, device: &Description) -> String {
     let json = Json {
         device: &device.device,
         driver: &device.driver,
-        agrees: lines.iter().all(|line| line.row.is_right()),
+        agrees: table.agrees(),
+        interrupted: table.interrupted,
         bias_limit: MAX_BIAS,
-        rows: lines.iter().map(JsonRow::of).collect(),
+        rows: table.lines.iter().map(JsonRow::of).collect(),
     };
     serde_json::to_string(&json).expect("plain values serialize")
 }

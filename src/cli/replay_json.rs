@@ -122,7 +122,7 @@ fn segment<'a>(scene: &'a Scene, segment: &Segment, before: DVec3) -> JsonSegmen
 fn vertex<'a>(scene: &'a Scene, vertex: &Vertex) -> JsonVertex<'a> {
     let sphere = &scene.spheres()[vertex.sphere];
     JsonVertex {
-        sphere: vertex.sphere + 1,
+        sphere: sphere.ordinal(),
         name: sphere.name(),
         kind: kind(sphere.surface()),
         distance: vertex.distance,
@@ -133,7 +133,7 @@ fn vertex<'a>(scene: &'a Scene, vertex: &Vertex) -> JsonVertex<'a> {
 
 fn light(scene: &Scene, found: Connection, brings: [f64; 3]) -> JsonLight<'_> {
     JsonLight {
-        sphere: found.light + 1,
+        sphere: scene.spheres()[found.light].ordinal(),
         name: scene.spheres()[found.light].name(),
         visible: found.visible,
         brings,

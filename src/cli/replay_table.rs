@@ -238,8 +238,7 @@ pub(super) fn kind(surface: Surface) -> &'static str {
 
 /// A sphere's name, or its place in the file, counted from 1.
 fn short_label(scene: &Scene, sphere: usize) -> String {
-    let name = scene.spheres()[sphere].name();
-    name.map_or_else(|| format!("sphere {}", sphere + 1), str::to_owned)
+    scene.spheres()[sphere].label()
 }
 
 /// The same with its kind.

@@ -43,7 +43,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
         run.film("twin", &scene, Box::new(CpuTracer::new(&scene, common.threads)?))?,
         run.film("device, other seed", &other_scene, chosen.tracer(&other_scene)?)?,
     ];
-    let [Some(ours), Some(twin), Some(other)] = films else { return Ok(INTERRUPTED) };
+    let [Some(ours), Some(twin), Some(other)] = films else {
+        streams::message("interrupted: there is no verdict on a part of the samples");
+        return Ok(INTERRUPTED);
+    };
     let invalid = ours.invalid + twin.invalid + other.invalid;
     let verdict = judge(&ours.film, &twin.film, &other.film);
     streams::results(&report(&verdict, invalid, &device, spp, common.json))?;

@@ -1,6 +1,6 @@
 //! Spheres and what their surfaces do with light.
 
-use super::error::quoted;
+use super::error::{printable, quoted};
 use super::{Invalid, MAX_EXPONENT, MAX_RADIANCE, MIN_RADIANCE, check_point, check_radius, refuse};
 use glam::DVec3;
 
@@ -136,6 +136,12 @@ impl Sphere {
             Some(name) => format!("sphere {} ({})", self.ordinal, quoted(name)),
             None => format!("sphere {}", self.ordinal),
         }
+    }
+
+    /// What a table calls it: its name, made printable, or `sphere 3`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        self.name.as_deref().map_or_else(|| format!("sphere {}", self.ordinal), printable)
     }
 
     /// Centre.

@@ -160,7 +160,12 @@ fn emit(out: &mut Buffer, excerpt: &Excerpt<'_>, report: &codespan::Diagnostic<(
 /// A key or name from the file as a message shows it: in backticks, cut when long,
 /// and with control characters escaped so that none reaches the terminal.
 pub(super) fn quoted(name: &str) -> String {
-    let mut shown = String::from("`");
+    format!("`{}`", printable(name))
+}
+
+/// The same without the backticks.
+pub(super) fn printable(name: &str) -> String {
+    let mut shown = String::new();
     for c in name.chars().take(MAX_QUOTED) {
         if c.is_control() {
             shown.extend(c.escape_default());
@@ -171,7 +176,6 @@ pub(super) fn quoted(name: &str) -> String {
     if name.chars().nth(MAX_QUOTED).is_some() {
         shown.push_str("...");
     }
-    shown.push('`');
     shown
 }
 
