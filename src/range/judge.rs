@@ -58,8 +58,8 @@ pub(super) struct Judge<'a> {
     arithmetic: Arithmetic,
     /// Numbers of the spheres that hold the camera.
     inside: Vec<usize>,
-    /// How far from the focus rays may start: the extent, or the far side of the smallest
-    /// wall around the camera.
+    /// How far from the focus rays may start: the extent, where those of the camera do, or the
+    /// far side of the smallest wall around it.
     rays_from: f64,
 }
 
@@ -71,12 +71,14 @@ impl<'a> Judge<'a> {
             .filter(|sphere| !matches!(sphere.surface(), Surface::Emitter(_)))
             .map(|sphere| sphere.center().distance(viewpoint.focus()) + sphere.radius())
             .reduce(f64::min);
+        let start = scene.camera().position() + viewpoint.approach() * scene.camera().forward();
+        let camera = start.distance(viewpoint.focus()).max(viewpoint.extent());
         Self {
             scene,
             viewpoint,
             arithmetic,
             inside: around().map(Sphere::ordinal).collect(),
-            rays_from: enclosing.unwrap_or(0.0).max(viewpoint.extent()),
+            rays_from: enclosing.unwrap_or(0.0).max(camera),
         }
     }
 
