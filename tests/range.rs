@@ -186,6 +186,9 @@ fn usual_scenes_are_in_range() {
         with(vec![sphere([0.0, -4.0, 0.0], 1.0, chalk())]),
         // A lamp in the middle of a hollow sphere around all.
         with(vec![sphere(DVec3::ZERO, 50.0, chalk())]),
+        // A camera on a floor, and on a planet.
+        with(vec![sphere([0.0, -1e5, 9.0], 1e5, chalk())]),
+        with(vec![sphere([0.0, -50.0, 9.0], 50.0, chalk())]),
         support::scenes::room(1e5, true),
         support::scenes::room(1e9, true),
         support::scenes::many(size(8, 8)),
@@ -219,6 +222,9 @@ fn what_rounding_would_decide_is_refused() {
     apart(&with(vec![sphere([1.0, -1e5 - 3.0, 0.0], 1e5, diffuse(0.1))]), close);
     // A speck right beside the camera.
     let speck = sphere([2e-3 + 1e-5, 0.0, 9.0], 2e-3, diffuse(0.0));
+    apart(&with(vec![speck]), "is too near to the camera");
+    // The same under the camera, whose horizon is seen.
+    let speck = sphere([2e-3, 0.0, 9.0], 2e-3, diffuse(0.0));
     apart(&with(vec![speck]), "is too near to the camera");
     // A lamp of a speck in a hollow that is large beside all else.
     let hollow =

@@ -131,8 +131,9 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The rim of a sphere in the picture is seen off by the error of the camera's place over
-    /// the rim's distance, √(h(h + 2r)) at the height h. A camera on a sphere sees no rim.
+    /// The rim of a sphere in the picture is seen off by the error δ of the camera's place over
+    /// the rim's distance, √(h(h + 2r)) at the height h. At no height at all, where the rim is
+    /// the horizon, it dips by √(2δ/r).
     fn too_near(&self) -> Option<Fault<'a>> {
         if self.viewpoint.approach() > 0.0 {
             return None;
@@ -149,9 +150,10 @@ impl<'a> Judge<'a> {
             Arithmetic::Double => self.reach(sphere),
         };
         let error = self.share(ERROR) * reach;
-        let rim = (height * (height + 2.0 * radius)).max(0.0).sqrt();
+        let at_least = height.max(error / 4.0);
+        let rim = (at_least * (at_least + 2.0 * radius)).sqrt();
         let needed = error / (MOVED * rim);
-        if height <= DOUBLE * error || fov >= needed {
+        if fov >= needed {
             return None;
         }
         if needed < NARROW {

@@ -114,8 +114,8 @@ fn explain(fault: &Fault<'_>, arithmetic: Arithmetic) -> OutOfRange {
             Some(sphere),
             format!("is too near to the camera for {precision}"),
             format!(
-                "the camera is {} above it; here it takes {} or more, or exactly 0",
-                short(height),
+                "the camera is {} above it; here it takes {} or more",
+                short(height.max(0.0)),
                 short(limit)
             ),
         ),
