@@ -118,11 +118,11 @@ fn text(table: &Table<'_>, device: &Description) -> String {
     let lines = &table.lines;
     let mut out = vec![
         format!("device    {} ({})", device.device, device.driver),
-        "bias of the image mean against the f64 twin, device - twin, in millionths of it; same"
+        "bias of the image mean against the f64 twin, (device - twin)/twin; same random numbers,"
             .to_owned(),
-        "random numbers, ± one standard error; the channel that is off most".to_owned(),
+        "± one standard error; the channel that is off most".to_owned(),
         String::new(),
-        format!("{:<14}{:<9}{:<10}{:>12}{:>10}{:>12}", "", "", "estimator", "samples", "bias", "±"),
+        format!("{:<14}{:<9}{:<10}{:>12}{:>11}{:>10}", "", "", "estimator", "samples", "bias", "±"),
     ];
     let mut group = "";
     for line in lines {
@@ -130,12 +130,12 @@ fn text(table: &Table<'_>, device: &Description) -> String {
         let shown = if line.case.group == group { "" } else { line.case.group };
         group = line.case.group;
         out.push(format!(
-            "{shown:<14}{:<9}{:<10}{:>12}{:>+10.2}{:>12.2}   {}",
+            "{shown:<14}{:<9}{:<10}{:>12}{:>+11.1e}{:>10.0e}   {}",
             line.case.value,
             line.estimator.name(),
             line.row.paths(),
-            1e6 * bias,
-            1e6 * error,
+            bias,
+            error,
             verdict(&line.row)
         ));
     }
