@@ -35,11 +35,14 @@ use support::recipe::{Recipe, recipes};
 use support::tracers::{kernel, with_kernel};
 
 /// Sides of the pictures, and samples per pixel.
-const SIDE: u32 = 12;
-const SAMPLES: u64 = 8;
+const SIDE: u32 = 16;
+const SAMPLES: u64 = 32;
 
 /// Scenes per test.
 const CASES: u32 = 96;
+
+/// Scenes of which one must show a fault.
+const FAULTY_CASES: u32 = 1500;
 
 /// Simpler scenes that are tried where one fails.
 const SHRINKS: u32 = 64;
@@ -55,9 +58,12 @@ fn scene(recipe: &Recipe) -> Option<Scene> {
 
 /// Runs `holds` for scenes that are the same on every run; the shrunk one that fails is
 /// printed as a scene file. Returns how many were valid.
-fn for_random_scenes(holds: impl Fn(&Scene) -> Result<(), String>) -> Result<u32, String> {
+fn for_random_scenes(
+    cases: u32,
+    holds: impl Fn(&Scene) -> Result<(), String>,
+) -> Result<u32, String> {
     let config = ProptestConfig {
-        cases: CASES,
+        cases,
         max_shrink_iters: SHRINKS,
         failure_persistence: None,
         ..ProptestConfig::default()
@@ -108,8 +114,12 @@ fn device(scene: &Scene) -> Option<GpuTracer> {
 /// A device whose diffuse and glossy surfaces all reflect `factor` times as much as they should.
 fn reflecting(scene: &Scene, factor: &str) -> Option<GpuTracer> {
     let wgsl = kernel(scene);
-    let right = "scattering.weight * color";
-    let wrong = wgsl.replace(right, &format!("{factor} * {right}"));
+    // In paths that run into light, and in those that sample it.
+    let (blind, connected) =
+        ("*= scattering.weight * color", "let throughput = (*path).throughput");
+    let wrong = wgsl
+        .replace(blind, &format!("{blind} * {factor}"))
+        .replace(connected, &format!("{connected} * {factor}"));
     (wrong != wgsl).then(|| with_kernel(scene, &wrong))
 }
 
@@ -164,7 +174,7 @@ fn holds(scene: &Scene, device: Device) -> Result<bool, String> {
 #[test]
 fn no_sample_of_random_scenes_is_invalid_and_the_means_agree() {
     let lit = Cell::new(0);
-    let valid = for_random_scenes(|scene| {
+    let valid = for_random_scenes(CASES, |scene| {
         holds(scene, device).map(|seen| lit.set(lit.get() + u32::from(seen)))
     });
     let valid = valid.unwrap_or_else(|error| panic!("{error}"));
@@ -176,12 +186,12 @@ fn no_sample_of_random_scenes_is_invalid_and_the_means_agree() {
 #[test]
 fn devices_that_are_wrong_are_found() {
     let faults: [(Device, &str); 2] = [
-        (|scene| reflecting(scene, "0.98"), "the means differ"),
-        (|scene| reflecting(scene, "2.0"), "invalid samples"),
+        (|scene| reflecting(scene, "0.9"), "the means differ"),
+        (|scene| reflecting(scene, "-1.0"), "invalid samples"),
     ];
     for (device, reason) in faults {
-        let error = for_random_scenes(|scene| holds(scene, device).map(drop))
-            .expect_err("a wrong device passes");
+        let error = for_random_scenes(FAULTY_CASES, |scene| holds(scene, device).map(drop))
+            .expect_err(reason);
         assert!(error.contains(reason), "{error}");
         assert!(error.contains("[[spheres]]"), "no scene to load: {error}");
     }
