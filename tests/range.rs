@@ -8,7 +8,7 @@ mod support {
     pub mod tracers;
 }
 
-use candor::estimate::pair;
+use candor::estimate::{Paired, pair};
 use candor::range::{Arithmetic, OutOfRange, check};
 use candor::scene::{Camera, Estimator, Scene, Sphere};
 use candor::verify::{ALPHA, MAX_BIAS};
@@ -31,6 +31,13 @@ fn with(more: Vec<Sphere>) -> Scene {
 
 fn judged(scene: &Scene, arithmetic: Arithmetic) -> Result<(), OutOfRange> {
     check(scene, &Viewpoint::of(scene), arithmetic)
+}
+
+/// Device against twin under `mis`, on so many samples per pixel.
+fn paired(scene: &Scene, samples: u64) -> Paired {
+    let scene = scene.clone().with_settings(scene.settings().with_estimator(Estimator::Mis));
+    let range = [0..samples];
+    pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range))
 }
 
 /// The largest size, within a thousandth, at which `build` makes a scene that is refused, and
@@ -117,10 +124,7 @@ fn the_device_is_right_at_the_limits() {
     for (name, build, ..) in KINDS {
         let (limit, _) = limit(build, Arithmetic::Single);
         let scene = build(limit);
-        let settings = scene.settings().with_estimator(Estimator::Mis);
-        let scene = scene.with_settings(settings);
-        let range = [0..1024];
-        let found = pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range));
+        let found = paired(&scene, 1024);
         println!(
             "{name:<9}{limit:.2e} {:+.1?} ± {:.1?} ppm",
             found.bias.map(|b| 1e6 * b),
@@ -135,9 +139,7 @@ fn the_device_is_right_at_the_limits() {
 fn far_beyond_a_limit_the_device_is_wrong() {
     let scene = narrow(1e-6);
     assert!(judged(&scene, Arithmetic::Single).is_err());
-    let scene = scene.clone().with_settings(scene.settings().with_estimator(Estimator::Mis));
-    let range = [0..1024];
-    let found = pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range));
+    let found = paired(&scene, 1024);
     println!("{found:?}");
     assert!(found.exceeds(MAX_BIAS, ALPHA), "{found:?}");
 }
@@ -152,10 +154,8 @@ fn beyond_the_limit_bias_grows_with_one_over_the_size() {
         let position = scene.camera().position();
         let fov = 2.0 * (3.0 * radius / position.distance(AIR)).atan().to_degrees();
         let camera = Camera::new(position, AIR, DVec3::Y, fov).expect("a camera");
-        let settings = scene.settings().with_estimator(Estimator::Mis);
-        let scene = Scene::new(camera, scene.size(), settings, scene.spheres().to_vec());
-        let range = [0..2048];
-        pair(&film(&mut on_device(&scene), &range), &film(&mut twin(&scene), &range))
+        let spheres = scene.spheres().to_vec();
+        paired(&Scene::new(camera, scene.size(), scene.settings(), spheres), 2048)
     };
     for share in [1.0, 0.3, 0.1, 0.03, 0.01, 0.003] {
         let found = close(share * limit);

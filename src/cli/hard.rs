@@ -2,7 +2,7 @@
 
 use super::args::{EstimatorChoice, VerifyArgs};
 use super::progress::bar;
-use super::{DONE, FAILED, INTERRUPTED, Refusal, interrupt, on_terminal, refuse, streams, verify};
+use super::{DONE, FAILED, INTERRUPTED, Refusal, interrupt, on_terminal, streams, verify};
 use crate::cpu::CpuTracer;
 use crate::scene::{Estimator, Scene};
 use crate::sweep::{Case, RESOLVED, Row, cases, measure};
@@ -23,12 +23,10 @@ struct Line<'a> {
 }
 
 pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
+    // `verify` has refused `auto` before.
     let estimators = match args.sampling.estimator {
-        Some(EstimatorChoice::Auto) => {
-            return refuse("verify checks one estimator; --estimator auto is for render");
-        }
         Some(EstimatorChoice::Named(estimator)) => vec![estimator],
-        None => SWEPT.to_vec(),
+        Some(EstimatorChoice::Auto) | None => SWEPT.to_vec(),
     };
     let common = &args.common;
     let (chosen, device) = verify::device(common)?;
@@ -38,10 +36,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
         Ok(Box::new(CpuTracer::new(scene, common.threads)?))
     };
     let cases = cases()?;
-    let shown = Shown::new(common.quiet, cases.len() * estimators.len());
-    let rows = cases.iter().flat_map(|case| {
-        estimators.iter().filter(|e| case.suits(**e)).map(move |&estimator| (case, estimator))
-    });
+    let suited = |case| estimators.iter().filter(move |e| Case::suits(case, **e));
+    let rows: Vec<(&Case, Estimator)> =
+        cases.iter().flat_map(|case| suited(case).map(move |&e| (case, e))).collect();
+    let shown = Shown::new(common.quiet, rows.len());
     let mut table = Table { lines: Vec::new(), interrupted: false };
     for (case, estimator) in rows {
         shown.tell(case, estimator);

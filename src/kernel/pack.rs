@@ -2,7 +2,7 @@
 
 use super::layout::{self, SPHERE_CAPACITY};
 use crate::film::SampleScale;
-use crate::scene::{Camera, Scene, Sphere, Surface};
+use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
 
@@ -115,13 +115,8 @@ pub fn pack(
     Ok(Packed { scene: packed, forms })
 }
 
-/// Where the camera's axis starts.
-fn ray_start(camera: &Camera, viewpoint: &Viewpoint) -> DVec3 {
-    camera.position() + viewpoint.approach() * camera.forward()
-}
-
 fn form_of(sphere: &Sphere, scene: &Scene, viewpoint: &Viewpoint) -> Form {
-    let distance = ray_start(scene.camera(), viewpoint).distance(sphere.center());
+    let distance = viewpoint.ray_start(scene.camera()).distance(sphere.center());
     let small = sphere.radius() <= viewpoint.extent() || distance > SMALL_FROM * sphere.radius();
     if small { Form::Factored } else { Form::Anchored }
 }
@@ -143,7 +138,7 @@ fn pack_camera(
     let (camera, size) = (scene.camera(), scene.size());
     let half_height = (camera.vertical_fov() / 2.0).tan();
     let half_width = half_height * f64::from(size.width()) / f64::from(size.height());
-    packed.origin = floats(units.point(ray_start(camera, viewpoint)));
+    packed.origin = floats(units.point(viewpoint.ray_start(camera)));
     packed.approach = float(units.length(viewpoint.approach()));
     packed.forward = floats(camera.forward());
     packed.right = floats(half_width * camera.right());

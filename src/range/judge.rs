@@ -71,7 +71,7 @@ impl<'a> Judge<'a> {
             .filter(|sphere| !matches!(sphere.surface(), Surface::Emitter(_)))
             .map(|sphere| sphere.center().distance(viewpoint.focus()) + sphere.radius())
             .reduce(f64::min);
-        let start = scene.camera().position() + viewpoint.approach() * scene.camera().forward();
+        let start = viewpoint.ray_start(scene.camera());
         let camera = start.distance(viewpoint.focus()).max(viewpoint.extent());
         Self {
             scene,
@@ -179,7 +179,7 @@ impl<'a> Judge<'a> {
         let camera = self.scene.camera();
         let (focus, extent) = (self.viewpoint.focus(), self.viewpoint.extent());
         let distance = camera.position().distance(focus).max(extent);
-        let start = camera.position() + self.viewpoint.approach() * camera.forward();
+        let start = self.viewpoint.ray_start(camera);
         let reach = match self.arithmetic {
             Arithmetic::Single => self.reach_at(start),
             Arithmetic::Double => camera.position().length() + focus.length() + extent,

@@ -132,10 +132,7 @@ impl Sphere {
     /// What messages call it: `sphere 3`, with its name if it has one.
     #[must_use]
     pub fn title(&self) -> String {
-        match &self.name {
-            Some(name) => format!("sphere {} ({})", self.ordinal, quoted(name)),
-            None => format!("sphere {}", self.ordinal),
-        }
+        title(self.ordinal, self.name())
     }
 
     /// What a table calls it: its name, made printable, or `sphere 3`.
@@ -160,6 +157,14 @@ impl Sphere {
     #[must_use]
     pub fn surface(&self) -> Surface {
         self.surface
+    }
+}
+
+/// What messages call a sphere, by its number and its name.
+pub(super) fn title(ordinal: usize, name: Option<&str>) -> String {
+    match name {
+        Some(name) => format!("sphere {ordinal} ({})", quoted(name)),
+        None => format!("sphere {ordinal}"),
     }
 }
 

@@ -67,6 +67,13 @@ impl Viewpoint {
         self.approach
     }
 
+    /// Where the rays of the scene's camera start, on its axis: at the camera, or
+    /// [`approach`](Self::approach) before it.
+    #[must_use]
+    pub fn ray_start(&self, camera: &Camera) -> DVec3 {
+        camera.position() + self.approach * camera.forward()
+    }
+
     /// For every sphere, whether paths see its inner side.
     #[must_use]
     pub fn inside(&self) -> &[bool] {

@@ -10,6 +10,7 @@ use super::stray::{list, nearest};
 use super::table::{Field, Table, found};
 use super::{Diagnostic, Log};
 use crate::scene::error::quoted;
+use crate::scene::sphere::title;
 use crate::scene::{Albedo, Exponent, Radiance, Sphere, Surface, check_radius};
 
 const MATERIAL_KEYS: &[&str] = &["diffuse", "glossy", "exponent"];
@@ -162,11 +163,7 @@ fn sphere<'a>(
         return None;
     };
     let name = entries.get("name").and_then(|name| name.get_ref().as_str());
-    let place = match name {
-        Some(name) => format!("sphere {ordinal} ({})", quoted(name)),
-        None => format!("sphere {ordinal}"),
-    };
-    let table = Table::new(place, value.span(), entries, SPHERE_KEYS, log);
+    let table = Table::new(title(ordinal, name), value.span(), entries, SPHERE_KEYS, log);
     if let Some(field) = table.optional("name") {
         field.text(log);
     }
