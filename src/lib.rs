@@ -2,9 +2,9 @@
 //!
 //! Data flows one way, and no module knows what stands to its right:
 //!
-//! [`scene`] → [`viewpoint`], [`effects`], [`bound`], [`range`] → [`film`] → [`tracer`],
-//! [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) → [`estimate`] → [`pilot`],
-//! [`render`], [`verify`], [`cost`], [`replay`] → [`report`] → [`cli`]
+//! [`scene`] → [`viewpoint`] → [`hierarchy`], [`effects`], [`bound`], [`range`] → [`film`] →
+//! [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) → [`estimate`] →
+//! [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`report`] → [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and
@@ -18,6 +18,7 @@ pub mod effects;
 pub mod estimate;
 pub mod film;
 pub mod gpu;
+pub mod hierarchy;
 pub mod kernel;
 pub mod pilot;
 pub mod range;
