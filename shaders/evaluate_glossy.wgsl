@@ -1,4 +1,4 @@
 // Every surface where lights are sampled is glossy.
 fn evaluate(sphere: u32, normal: vec3<f32>, incoming: vec3<f32>, direction: vec3<f32>) -> Worth {
-    return evaluate_glossy(normal, incoming, direction, scene.spheres[sphere].exponent);
+    return evaluate_glossy(normal, incoming, direction, spheres[sphere].exponent);
 }

@@ -4,7 +4,3 @@
 fn distance_to(q: Quadratic, sphere: u32, leaving: u32) -> f32 {
     return select(entry(q), MISS, sphere == leaving);
 }
-
-fn facing_normal(outward: vec3<f32>, sphere: u32) -> vec3<f32> {
-    return outward;
-}

@@ -5,9 +5,5 @@
 fn distance_to(q: Quadratic, sphere: u32, leaving: u32) -> f32 {
     let leaves = sphere == leaving;
     let outer = select(entry(q), MISS, leaves);
-    return select(outer, exit(q, leaves), scene.spheres[sphere].inside == 1u);
-}
-
-fn facing_normal(outward: vec3<f32>, sphere: u32) -> vec3<f32> {
-    return select(outward, -outward, scene.spheres[sphere].inside == 1u);
+    return select(outer, exit(q, leaves), spheres[sphere].inside == 1u);
 }

@@ -16,20 +16,12 @@ fn cone_from(axis: vec3<f32>, sine2: f32, cosine2: f32) -> Cone {
     return Cone(axis, min(sine2, 1.0) / (1.0 + sqrt(max(cosine2, 0.0))));
 }
 
-// cos²σ = (d - r)(d + r)/d².
-fn cone_factored(position: vec3<f32>, centre: vec3<f32>, radius: f32) -> Cone {
-    let to_centre = centre - position;
-    let d = length(to_centre);
-    let sine = radius / d;
-    return cone_from(to_centre / d, sine * sine, (d - radius) * (d + radius) / (d * d));
-}
-
-// With the gradient g = κp + m, |g| is d/R and |g|² - 1 is 2κF.
-fn cone_anchored(position: vec3<f32>, gradient: vec3<f32>, offset: f32, curvature: f32) -> Cone {
-    let g = gradient + curvature * position;
-    let g2 = dot(g, g);
-    let twice_f = dot(gradient + g, position) + 2.0 * offset;
-    return cone_from(g * -inverseSqrt(g2), 1.0 / g2, curvature * twice_f / g2);
+// (sine, cosine) of the angle α from the axis of a cone, uniform over its solid angle:
+// 1 - cosα is uniform in [0, height), height = 1 - cosine of the half angle. It is not
+// formed from cosα, which has no digits left in a narrow cone.
+fn polar_cone(u: f32, height: f32) -> vec2<f32> {
+    let t = u * height;
+    return vec2<f32>(sqrt(t * (2.0 - t)), 1.0 - t);
 }
 
 // Distance to a light along a direction that was drawn inside its cone: the ray is

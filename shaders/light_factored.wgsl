@@ -1,9 +1,9 @@
 // Every light is in factored form.
 
 fn outer_cone(light: u32, position: vec3<f32>) -> Cone {
-    return cone_factored(position, scene.spheres[light].position, scene.spheres[light].size);
+    return cone_factored(position, spheres[light].position, spheres[light].size);
 }
 
 fn light_quadratic(light: u32, ray: Ray) -> Quadratic {
-    return factored(ray, scene.spheres[light].position, scene.spheres[light].size);
+    return factored(ray, spheres[light].position, spheres[light].size);
 }

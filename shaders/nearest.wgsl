@@ -16,19 +16,11 @@ struct Shape {
 }
 
 fn shape_of(i: u32) -> Shape {
-    return Shape(scene.spheres[i].position, scene.spheres[i].size, scene.spheres[i].offset);
+    return Shape(spheres[i].position, spheres[i].size, spheres[i].offset);
 }
 
 fn closer(best: Hit, q: Quadratic, i: u32, leaving: u32) -> Hit {
     let t = distance_to(q, i, leaving);
     let is_closer = t < best.distance;
     return Hit(select(best.distance, t, is_closer), select(best.sphere, i, is_closer));
-}
-
-fn closer_factored(best: Hit, ray: Ray, s: Shape, i: u32, leaving: u32) -> Hit {
-    return closer(best, factored(ray, s.position, s.size), i, leaving);
-}
-
-fn closer_anchored(best: Hit, ray: Ray, s: Shape, i: u32, leaving: u32) -> Hit {
-    return closer(best, anchored(ray, s.position, s.offset, s.size), i, leaving);
 }

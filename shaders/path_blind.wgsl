@@ -22,8 +22,8 @@ fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
     if hit.sphere >= UNFINISHED {
         return false;
     }
-    let color = scene.spheres[hit.sphere].color;
-    if scene.spheres[hit.sphere].kind == KIND_EMITTER {
+    let color = spheres[hit.sphere].color;
+    if spheres[hit.sphere].kind == KIND_EMITTER {
         (*path).radiance = (*path).throughput * color;
         return false;
     }

@@ -30,7 +30,7 @@ fn connect(point: SurfacePoint, sphere: u32, incoming: vec3<f32>, u: vec2<f32>,
     let ray = Ray(point.position, direction);
     let distance = seen_distance(light_quadratic(pick.light, ray), pick.light);
     let blocked = occluded(ray, sphere, pick.light, distance);
-    let light = select(share, 0.0, blocked || !samples_light_at(sphere)) * scene.spheres[pick.light].color;
+    let light = select(share, 0.0, blocked || !samples_light_at(sphere)) * spheres[pick.light].color;
     return select(no_direction(direction), light, is_direction(direction));
 }
 
@@ -58,8 +58,8 @@ fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
     if hit.sphere >= UNFINISHED {
         return false;
     }
-    let color = scene.spheres[hit.sphere].color;
-    if scene.spheres[hit.sphere].kind == KIND_EMITTER {
+    let color = spheres[hit.sphere].color;
+    if spheres[hit.sphere].kind == KIND_EMITTER {
         let share = share_of_hit(hit.sphere, (*path).departure);
         (*path).radiance += (*path).throughput * share * color;
         (*path).finished = !unfinished;

@@ -8,10 +8,6 @@ struct Pick {
     chance: f32,
 }
 
-fn light_at(i: u32) -> u32 {
-    return scene.lights[i / 4u][i % 4u];
-}
-
 // height · brightest channel · largest cosine of a direction in the cone. That cosine is
 // cos(θ - σ) for a centre at the angle θ > σ from the normal.
 fn potential(light: u32, point: SurfacePoint) -> f32 {
@@ -20,7 +16,7 @@ fn potential(light: u32, point: SurfacePoint) -> f32 {
     let cos_sigma = 1.0 - cone.height;
     let sines = sqrt(max(1.0 - cos_theta * cos_theta, 0.0) * cone.height * (2.0 - cone.height));
     let cosine = select(max(cos_theta * cos_sigma + sines, 0.0), 1.0, cos_theta >= cos_sigma);
-    let color = scene.spheres[light].color;
+    let color = spheres[light].color;
     return cone.height * cosine * max(max(color.x, color.y), color.z);
 }
 

@@ -60,7 +60,6 @@ fn probe_hit(@builtin(global_invocation_id) id: vec3<u32>) {
 fn probe_nearest(@builtin(global_invocation_id) id: vec3<u32>) {
     if 3u * id.x >= arrayLength(&outputs) { return; }
     let ray = Ray(input_floats(2u * id.x).xyz, input_floats(2u * id.x + 1u).xyz);
-    load_shapes();
     let hit = nearest(ray, inputs[2u * id.x + 1u].w);
     outputs[3u * id.x] = vec4<u32>(bitcast<u32>(hit.distance), hit.sphere, 0u, 0u);
     if hit.sphere < UNFINISHED {
@@ -150,7 +149,7 @@ fn probe_density(@builtin(global_invocation_id) id: vec3<u32>) {
     let sphere = inputs[3u * id.x + 1u].w;
     let s = scatter(sphere, normal.xyz, incoming.xyz, u);
     let worth = evaluate(sphere, normal.xyz, incoming.xyz, s.direction);
-    let t = 1.0 - polar_phong(u.x, scene.spheres[sphere].exponent).y;
+    let t = 1.0 - polar_phong(u.x, spheres[sphere].exponent).y;
     outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(s.density, worth.density, t, 0.0));
 }
 
@@ -208,13 +207,15 @@ fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
         outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
         outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
         outputs[4] = vec4<u32>(
-            scene.sphere_count, scene.light_count, bitcast<u32>(scene.approach), 0u);
+            scene.sphere_count, scene.light_count, bitcast<u32>(scene.approach),
+            scene.hierarchy_count);
+        outputs[5] = vec4<u32>(bitcast<u32>(scene.reach), 0u, 0u, 0u);
         for (var i = 0u; i < LIGHT_VECTORS; i++) {
-            outputs[5u + i] = scene.lights[i];
+            outputs[6u + i] = lights[i];
         }
     }
-    let s = scene.spheres[id.x];
-    let at = 5u + LIGHT_VECTORS + 3u * id.x;
+    let s = spheres[id.x];
+    let at = 6u + LIGHT_VECTORS + 3u * id.x;
     outputs[at] = vec4<u32>(bitcast<vec3<u32>>(s.position), bitcast<u32>(s.size));
     outputs[at + 1u] = vec4<u32>(bitcast<vec3<u32>>(s.color), bitcast<u32>(s.exponent));
     outputs[at + 2u] = vec4<u32>(bitcast<u32>(s.offset), s.index, s.kind, s.inside);

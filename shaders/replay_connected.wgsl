@@ -1,7 +1,7 @@
 // The light that `connect` samples from a vertex, found once more by the same functions.
 
 fn connection_of(point: SurfacePoint, sphere: u32, key: SampleKey, bounce: u32) -> Connection {
-    if bounce == BOUNCES || scene.spheres[sphere].kind == KIND_EMITTER || !samples_light_at(sphere) {
+    if bounce == BOUNCES || spheres[sphere].kind == KIND_EMITTER || !samples_light_at(sphere) {
         return Connection(NO_SPHERE, false);
     }
     let bits = random_bits(key, bounce + 1u);

@@ -3,8 +3,6 @@
 // Lengths are in kernel units: the scene re-centred on its focus and scaled by a
 // power of two. Radiance is in the scene's own unit.
 
-const SPHERE_CAPACITY: u32 = 512u;
-const LIGHT_VECTORS: u32 = SPHERE_CAPACITY / 4u;
 const NO_SPHERE: u32 = 0xffffffffu;
 
 const KIND_EMITTER: u32 = 0u;
@@ -36,7 +34,8 @@ struct Scene {
     origin: vec3<f32>,
     seed: u32,
     forward: vec3<f32>,
-    // Spheres 0..factored_count are in factored form, the rest in anchored form.
+    // Spheres 0..hierarchy_count are under the hierarchy, hierarchy_count..factored_count
+    // are the others in factored form, the rest are in anchored form.
     factored_count: u32,
     right: vec3<f32>,
     // A sample x enters the film as the integer trunc(x·2^film_shift).
@@ -48,10 +47,9 @@ struct Scene {
     light_count: u32,
     // How far along the view axis rays start, where the camera is far away.
     approach: f32,
-    // Places of the emitters in `spheres`, four to a vector: an array in a uniform
-    // buffer has a stride of 16 bytes.
-    lights: array<vec4<u32>, LIGHT_VECTORS>,
-    spheres: array<Sphere, SPHERE_CAPACITY>,
+    hierarchy_count: u32,
+    // No coordinate of the hierarchy's boxes is larger.
+    reach: f32,
 }
 
 struct Dispatch {

@@ -9,7 +9,7 @@ fn share_of_sampled(x: f32) -> f32 {
 }
 
 fn samples_light_at(sphere: u32) -> bool {
-    return scene.spheres[sphere].kind == KIND_DIFFUSE;
+    return spheres[sphere].kind == KIND_DIFFUSE;
 }
 
 // The last segment of a path can only hit a light, which does not count from here.

@@ -3,7 +3,6 @@
 use super::args::{CommonArgs, EstimatorChoice, SamplingArgs};
 use super::{Refusal, in_colour, refuse};
 use crate::bound;
-use crate::kernel;
 use crate::range::{self, Arithmetic};
 use crate::scene::{self, Scene, SceneFileError, Source};
 use crate::viewpoint::Viewpoint;
@@ -49,9 +48,6 @@ pub(super) fn check_range(
 ) -> Result<(), Refusal> {
     let viewpoint = Viewpoint::of(scene);
     for &arithmetic in arithmetics {
-        if arithmetic == Arithmetic::Single {
-            kernel::check_count(scene)?;
-        }
         range::check(scene, &viewpoint, arithmetic)
             .map_err(|out| in_words(source.complain(out.sphere, &out.what, &out.allowed)))?;
     }

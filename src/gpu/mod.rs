@@ -3,8 +3,10 @@
 mod bands;
 mod device;
 mod pace;
+mod pipeline;
 pub mod probe;
 mod replay;
+mod scene;
 mod tracer;
 
 pub use device::{Adapter, Gpu, adapters};

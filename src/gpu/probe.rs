@@ -3,7 +3,8 @@
 use super::bands::read_buffer;
 use super::device::Gpu;
 use crate::film::{PixelWords, WORDS};
-use crate::kernel::{layout, probe_source, validate};
+use super::scene::SceneBuffers;
+use crate::kernel::{Packed, probe_source, validate};
 use crate::tracer::TraceError;
 use wgpu::util::DeviceExt;
 
@@ -16,15 +17,15 @@ pub struct Probe<'gpu> {
     gpu: &'gpu Gpu,
     wgsl: String,
     module: wgpu::ShaderModule,
-    scene: wgpu::Buffer,
+    scene: SceneBuffers,
 }
 
 impl<'gpu> Probe<'gpu> {
-    /// Compiles the probe; `scene` is what its functions find in the uniform buffer.
+    /// Compiles the probe; `scene` is what its functions find in the scene's buffers.
     ///
     /// # Errors
     /// If the device refuses the kernel.
-    pub fn new(gpu: &'gpu Gpu, scene: &layout::Scene) -> Result<Self, TraceError> {
+    pub fn new(gpu: &'gpu Gpu, scene: &Packed) -> Result<Self, TraceError> {
         Self::with_source(gpu, scene, probe_source())
     }
 
@@ -35,7 +36,7 @@ impl<'gpu> Probe<'gpu> {
     /// If the device refuses the text.
     pub fn with_source(
         gpu: &'gpu Gpu,
-        scene: &layout::Scene,
+        scene: &Packed,
         wgsl: String,
     ) -> Result<Self, TraceError> {
         let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -43,11 +44,7 @@ impl<'gpu> Probe<'gpu> {
             source: wgpu::ShaderSource::Wgsl(wgsl.as_str().into()),
         });
         gpu.check()?;
-        let scene = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("scene"),
-            contents: bytemuck::bytes_of(scene),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let scene = SceneBuffers::new(gpu, scene)?;
         Ok(Self { gpu, wgsl, module, scene })
     }
 
@@ -62,7 +59,7 @@ impl<'gpu> Probe<'gpu> {
         let outputs = vec![[u32::MAX; 4]; results];
         let output = self.storage(bytemuck::cast_slice(&outputs));
         let input = self.storage(bytemuck::cast_slice(inputs));
-        self.dispatch(entry, &[(0, &self.scene), (4, &input), (5, &output)], results)?;
+        self.dispatch(entry, &[(4, &input), (5, &output)], results)?;
         Ok(bytemuck::pod_collect_to_vec(&read_buffer(self.gpu, &output)?))
     }
 
@@ -77,7 +74,7 @@ impl<'gpu> Probe<'gpu> {
     ) -> Result<Vec<PixelWords>, TraceError> {
         let words = self.storage(bytemuck::cast_slice(film));
         let input = self.storage(bytemuck::cast_slice(rows));
-        self.dispatch("probe_film", &[(0, &self.scene), (2, &words), (4, &input)], rows.len())?;
+        self.dispatch("probe_film", &[(2, &words), (4, &input)], rows.len())?;
         let bytes = read_buffer(self.gpu, &words)?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         Ok(words.as_chunks::<WORDS>().0.to_vec())
@@ -108,10 +105,11 @@ impl<'gpu> Probe<'gpu> {
             cache: None,
         });
         let used = bindings_of(&self.wgsl, entry);
-        let entries: Vec<wgpu::BindGroupEntry> = buffers
-            .iter()
+        let scene = self.scene.bindings().iter().map(|binding| (binding.number, &binding.buffer));
+        let entries: Vec<wgpu::BindGroupEntry> = scene
+            .chain(buffers.iter().copied())
             .filter(|(binding, _)| used.contains(binding))
-            .map(|&(binding, buffer)| wgpu::BindGroupEntry {
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
                 binding,
                 resource: buffer.as_entire_binding(),
             })

@@ -2,15 +2,17 @@
 
 use super::bands::read_buffer;
 use super::device::Gpu;
-use super::tracer::{bind, buffer, check_iterations, pipeline};
+use super::pipeline::Pipeline;
+use super::scene::{Binding, SceneBuffers, WRITTEN};
+use super::tracer::{buffer, check_iterations};
 use crate::bound::sample_scale;
-use crate::kernel::{self, Kernel, KernelUnits, layout};
+use crate::effects::Effects;
+use crate::kernel::{self, Kernel, KernelUnits, Packed, layout};
 use crate::scene::Scene;
 use crate::tracer::TraceError;
 use crate::trail::{Connection, Ending, Segment, Trail, Vertex};
 use crate::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
-use wgpu::util::DeviceExt;
 
 /// A scene on a device, ready to trace single samples again.
 #[derive(Debug)]
@@ -31,11 +33,10 @@ impl<'a> Replayer<'a> {
     /// If the scene does not fit the device.
     pub fn new(scene: &'a Scene, gpu: &'a Gpu) -> Result<Self, TraceError> {
         let viewpoint = Viewpoint::of(scene);
-        let packed = kernel::pack(scene, &viewpoint, sample_scale(scene))
-            .map_err(|error| TraceError::Device(error.to_string()))?;
-        let kernel = Kernel::of(scene, &viewpoint, &packed);
+        let effects = Effects::of(scene, &viewpoint);
+        let packed = kernel::pack(scene, &viewpoint, effects, sample_scale(scene));
         check_iterations(scene, &packed)?;
-        Self::with_kernel(scene, gpu, &packed.scene, &kernel.replay_wgsl())
+        Self::with_kernel(scene, gpu, &packed, &Kernel::of(scene, effects, &packed).replay_wgsl())
     }
 
     /// The same with a packed scene and the text of a kernel; the tests use it to replay
@@ -46,17 +47,11 @@ impl<'a> Replayer<'a> {
     pub fn with_kernel(
         scene: &'a Scene,
         gpu: &'a Gpu,
-        packed: &layout::Scene,
+        packed: &Packed,
         wgsl: &str,
     ) -> Result<Self, TraceError> {
         let device = gpu.device();
-        let pipeline = pipeline(device, wgsl, "replay");
-        gpu.check()?;
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("scene"),
-            contents: bytemuck::bytes_of(packed),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let buffers = SceneBuffers::new(gpu, packed)?;
         let request = buffer::<layout::Request>(
             device,
             "request",
@@ -71,11 +66,17 @@ impl<'a> Replayer<'a> {
                 | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let layout = pipeline.get_bind_group_layout(0);
-        let group = bind(device, &layout, &[&uniform, &request, &replayed]);
+        let own = [
+            Binding::new(1, wgpu::BufferBindingType::Uniform, &request),
+            Binding::new(2, WRITTEN, &replayed),
+        ];
+        let bindings = [buffers.bindings(), &own].concat();
+        let pipeline = Pipeline::new(device, wgsl, "replay", &bindings);
+        gpu.check()?;
+        let group = pipeline.bind(device, &bindings);
         gpu.check()?;
         let back = BackToScene::new(scene, packed);
-        Ok(Self { scene, gpu, pipeline, request, replayed, group, back })
+        Ok(Self { scene, gpu, pipeline: pipeline.compute, request, replayed, group, back })
     }
 
     /// The path of the sample `index` of a pixel, which is numbered row by row from the top.
@@ -130,7 +131,7 @@ impl<'a> Replayer<'a> {
 /// The way from kernel units back to the scene's, in `f64`.
 #[derive(Debug)]
 struct BackToScene {
-    /// Places among the scene's spheres, in the order of the uniform buffer.
+    /// Places among the scene's spheres, in the order of the packed ones.
     spheres: Vec<usize>,
     /// The camera, where the kernel starts its rays before the scene instead.
     far_camera: Option<DVec3>,
@@ -141,14 +142,11 @@ struct BackToScene {
 }
 
 impl BackToScene {
-    fn new(scene: &Scene, packed: &layout::Scene) -> Self {
+    fn new(scene: &Scene, packed: &Packed) -> Self {
         let viewpoint = Viewpoint::of(scene);
         let units = KernelUnits::of(&viewpoint);
         Self {
-            spheres: packed.spheres[..packed.sphere_count as usize]
-                .iter()
-                .map(|sphere| sphere.index as usize)
-                .collect(),
+            spheres: packed.spheres.iter().map(|sphere| sphere.index as usize).collect(),
             far_camera: (viewpoint.approach() > 0.0).then(|| scene.camera().position()),
             scale: units.length(1.0),
             origin: units.point(DVec3::ZERO),
@@ -185,7 +183,7 @@ impl BackToScene {
         }
     }
 
-    /// A place in the uniform buffer among the scene's spheres.
+    /// A place among the packed spheres, among the scene's spheres.
     fn place(&self, place: u32) -> Option<usize> {
         self.spheres.get(place as usize).copied()
     }

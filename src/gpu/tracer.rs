@@ -3,23 +3,21 @@
 use super::bands::{self, Band};
 use super::device::Gpu;
 use super::pace::Pace;
+use super::pipeline::Pipeline;
+use super::scene::{Binding, SceneBuffers, WRITTEN};
 use crate::bound::sample_scale;
+use crate::effects::Effects;
 use crate::film::{Film, FilmError, SampleRanges, SampleScale};
-use crate::kernel::{self, Kernel, SPHERE_CAPACITY, Tile, layout};
-use crate::scene::{ImageSize, MAX_BOUNCES, Scene};
+use crate::kernel::{self, Kernel, Packed, Tile, layout};
+use crate::scene::{ImageSize, Scene};
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
 use crate::viewpoint::Viewpoint;
 use std::ops::Range;
 use std::time::Instant;
-use wgpu::util::DeviceExt;
 
 /// lavapipe leaves a loop without a word after this many iterations, counted over all
 /// loops of an invocation group (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa).
 const MAX_ITERATIONS: u64 = 65_535;
-
-/// Without sampling lights, one sample of the longest path among the most spheres stays
-/// below.
-const _: () = assert!((MAX_BOUNCES as u64 + 1) * (SPHERE_CAPACITY as u64 + 1) < MAX_ITERATIONS);
 
 /// The device counts invalid samples in 32 bits, so its ledger is taken to the host before it
 /// can have met that many: after this many samples and one more dispatch, which is shorter.
@@ -36,6 +34,8 @@ pub struct GpuTracer {
     scale: SampleScale,
     tile: Tile,
     samples: SampleRanges,
+    /// Bytes of the scene's buffers.
+    scene_bytes: u64,
     pipeline: wgpu::ComputePipeline,
     work: wgpu::Buffer,
     ledger: wgpu::Buffer,
@@ -53,34 +53,32 @@ impl GpuTracer {
     /// # Errors
     /// If scene or picture do not fit the device.
     pub fn new(scene: &Scene, gpu: Gpu) -> Result<Self, TraceError> {
-        let viewpoint = Viewpoint::of(scene);
-        let scale = sample_scale(scene);
-        let packed = kernel::pack(scene, &viewpoint, scale)
-            .map_err(|error| TraceError::Device(error.to_string()))?;
-        let kernel = Kernel::of(scene, &viewpoint, &packed);
+        Self::with_effects(scene, gpu, Effects::of(scene, &Viewpoint::of(scene)))
+    }
+
+    /// The same with a kernel for more effects than the scene calls for.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_effects(scene: &Scene, gpu: Gpu, effects: Effects) -> Result<Self, TraceError> {
+        let packed = kernel::pack(scene, &Viewpoint::of(scene), effects, sample_scale(scene));
         check_iterations(scene, &packed)?;
-        Self::with_kernel(scene, gpu, &packed.scene, &kernel.wgsl())
+        Self::with_kernel(scene, gpu, &packed, &Kernel::of(scene, effects, &packed).wgsl())
     }
 
     /// Puts a packed scene and the text of a kernel on the device; the tests use it to
     /// run kernels that are wrong on purpose.
     ///
     /// # Errors
-    /// If kernel or picture do not fit the device.
+    /// If scene, kernel or picture do not fit the device.
     pub fn with_kernel(
         scene: &Scene,
         gpu: Gpu,
-        packed: &layout::Scene,
+        packed: &Packed,
         wgsl: &str,
     ) -> Result<Self, TraceError> {
         let device = gpu.device();
-        let pipeline = pipeline(device, wgsl, "render");
-        gpu.check()?;
-        let uniform = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("scene"),
-            contents: bytemuck::bytes_of(packed),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let buffers = SceneBuffers::new(&gpu, packed)?;
         let work = buffer::<layout::Dispatch>(
             device,
             "work",
@@ -93,28 +91,34 @@ impl GpuTracer {
                 | wgpu::BufferUsages::COPY_SRC
                 | wgpu::BufferUsages::COPY_DST,
         );
-        let layout = pipeline.get_bind_group_layout(0);
-        let bands = bands::allocate(&gpu, scene.size())?
-            .into_iter()
-            .map(|band| {
-                let group = bind(device, &layout, &[&uniform, &work, &band.buffer, &ledger]);
-                (band, group)
-            })
-            .collect();
+        let bands = bands::allocate(&gpu, scene.size())?;
+        let bindings = |band: &Band| {
+            let own = [
+                Binding::new(1, wgpu::BufferBindingType::Uniform, &work),
+                Binding::new(2, WRITTEN, &band.buffer),
+                Binding::new(3, WRITTEN, &ledger),
+            ];
+            [buffers.bindings(), &own].concat()
+        };
+        let pipeline = Pipeline::new(device, wgsl, "render", &bindings(&bands[0]));
+        gpu.check()?;
+        let groups: Vec<wgpu::BindGroup> =
+            bands.iter().map(|band| pipeline.bind(device, &bindings(band))).collect();
         gpu.check()?;
         Ok(Self {
-            gpu,
             size: scene.size(),
             scale: sample_scale(scene),
             tile: Tile::of(scene.size()),
             samples: SampleRanges::default(),
-            pipeline,
+            scene_bytes: buffers.bytes(),
+            pipeline: pipeline.compute,
             work,
             ledger,
             invalid: Ledger::default(),
             unread: 0,
-            bands,
+            bands: bands.into_iter().zip(groups).collect(),
             pace: Pace::default(),
+            gpu,
         })
     }
 
@@ -122,8 +126,8 @@ impl GpuTracer {
     #[must_use]
     pub fn device_bytes(&self) -> u64 {
         let films: u64 = self.bands.iter().map(|(band, _)| band.buffer.size()).sum();
-        let scene = size_of::<layout::Scene>() as u64;
-        films + bands::staging_bytes(films) + scene + self.work.size() + self.ledger.size()
+        let dispatches = self.work.size() + self.ledger.size();
+        films + bands::staging_bytes(films) + self.scene_bytes + dispatches
     }
 
     /// Traces `count` samples from `first` on, of the given rows of a band.
@@ -253,11 +257,11 @@ fn invalid_sample(record: &[u32; layout::RECORD_WORDS], bound: f32) -> InvalidSa
 /// Refuses paths whose loops a driver may cut short: a vertex that samples lights goes
 /// through the spheres twice and through the lights up to three times (two passes to
 /// pick one, one for the chance of one that the path hits by itself).
-pub(super) fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result<(), TraceError> {
+pub(super) fn check_iterations(scene: &Scene, packed: &Packed) -> Result<(), TraceError> {
     if !scene.settings().estimator().samples_lights() {
         return Ok(());
     }
-    let (spheres, lights) = (scene.spheres().len() as u64, packed.light_places().len() as u64);
+    let (spheres, lights) = (scene.spheres().len() as u64, packed.lights.len() as u64);
     let vertex = 1 + 2 * (spheres + 1) + 3 * (lights + 1);
     let most = MAX_ITERATIONS / vertex - 1;
     let bounces = scene.settings().bounces();
@@ -272,21 +276,6 @@ pub(super) fn check_iterations(scene: &Scene, packed: &kernel::Packed) -> Result
     )))
 }
 
-pub(super) fn pipeline(device: &wgpu::Device, wgsl: &str, entry: &str) -> wgpu::ComputePipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("candor kernel"),
-        source: wgpu::ShaderSource::Wgsl(wgsl.into()),
-    });
-    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry),
-        layout: None,
-        module: &module,
-        entry_point: Some(entry),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
-        cache: None,
-    })
-}
-
 pub(super) fn buffer<T>(
     device: &wgpu::Device,
     label: &str,
@@ -298,21 +287,6 @@ pub(super) fn buffer<T>(
         usage,
         mapped_at_creation: false,
     })
-}
-
-pub(super) fn bind(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    buffers: &[&wgpu::Buffer],
-) -> wgpu::BindGroup {
-    let entries: Vec<wgpu::BindGroupEntry> = (0..)
-        .zip(buffers)
-        .map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        })
-        .collect();
-    device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
 }
 
 fn least(a: u64, b: u64) -> u32 {

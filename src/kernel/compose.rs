@@ -1,80 +1,24 @@
 //! Composes the kernel's WGSL from the fragments in `shaders/`, by concatenation alone.
 
-use super::pack::{Form, Packed};
-use super::unrolled;
-use crate::effects::Effects;
+use super::pack::Packed;
+use super::search;
+use super::text::{Text, fragment};
+use super::tile::Tile;
+use crate::effects::{Effect, Effects};
 use crate::scene::{Estimator, ImageSize, Scene};
-use crate::viewpoint::Viewpoint;
+use crate::viewpoint::Form;
 
 /// Scenes of up to this many spheres get straight-line code instead of a loop over
 /// the spheres, which is faster (BENCHMARKS.md, "Speed of the classic scene").
 pub const UNROLLED_SPHERES: usize = 16;
-
-macro_rules! fragment {
-    ($name:literal) => {
-        include_str!(concat!("../../shaders/", $name, ".wgsl"))
-    };
-}
-
-/// The block of invocations of one workgroup: columns, rows and samples; 64 in all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Tile {
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Samples of each pixel.
-    pub samples: u32,
-}
-
-impl Tile {
-    /// Invocations of a workgroup.
-    pub const INVOCATIONS: u32 = 64;
-
-    /// A tile of 8×8 pixels and one sample; where the picture is narrower or lower than
-    /// that, samples take the place of the missing pixels.
-    #[must_use]
-    pub fn of(size: ImageSize) -> Self {
-        let width = size.width().next_power_of_two().min(8);
-        let height = size.height().next_power_of_two().min(8);
-        Self { width, height, samples: Self::INVOCATIONS / (width * height) }
-    }
-}
-
-/// How the nearest hit is searched.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Nearest {
-    /// A loop over the spheres, any number of them.
-    Loop,
-    /// One statement per sphere, in the order of the scene file.
-    Unrolled(Vec<Form>),
-}
-
-impl Nearest {
-    /// The search that suits spheres of these forms.
-    #[must_use]
-    pub fn of(forms: &[Form]) -> Self {
-        if forms.len() <= UNROLLED_SPHERES { Self::Unrolled(forms.to_vec()) } else { Self::Loop }
-    }
-
-    fn wgsl(&self) -> String {
-        match self {
-            Self::Loop => fragment!("nearest_loop").to_owned(),
-            Self::Unrolled(forms) => unrolled::nearest(forms),
-        }
-    }
-}
 
 /// Paths of up to this many bounces are written out, one statement a segment: a driver's
 /// compiler does so by itself for short loops, but not for the longer body of `mis`
 /// (BENCHMARKS.md, "Speed of the classic scene").
 const UNROLLED_BOUNCES: u32 = 4;
 
-/// The statements that take a path from segment to segment.
-fn steps(bounces: u32) -> String {
-    if bounces > UNROLLED_BOUNCES {
-        return looped("advance");
-    }
+/// The statements that take a path from segment to segment, one by one.
+fn written_out(bounces: u32) -> String {
     let step = |bounce| {
         format!("    if goes_on {{\n        goes_on = advance(&path, key, {bounce}u);\n    }}\n")
     };
@@ -90,56 +34,14 @@ fn looped(advance: &str) -> String {
 }
 
 /// The function that follows a path, taking these steps.
-fn follow(steps: &str) -> String {
+fn follow(steps: &str, loads: &str) -> String {
     format!(
         "// One path: from the camera to a light, to nowhere, or to its last bounce.\n\
-         fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {{\n    load_shapes();\n    \
+         fn trace(pixel: vec2<u32>, key: SampleKey) -> Sample {{\n{loads}    \
          var path = start(camera_ray(pixel, unit_floats(random_bits(key, 0u))));\n    \
          var goes_on = true;\n{steps}    \
          return Sample(path.radiance, path.finished);\n}}\n"
     )
-}
-
-/// The lights of a scene, for the estimators that sample them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lights {
-    /// There are none.
-    None,
-    /// There is one.
-    One {
-        /// Its place in the uniform buffer.
-        place: u32,
-        /// Whether it is in anchored form.
-        huge: bool,
-    },
-    /// There are several.
-    Many {
-        /// Whether one of them is in anchored form.
-        huge: bool,
-    },
-}
-
-impl Lights {
-    /// The lights of a packed scene.
-    #[must_use]
-    pub fn of(packed: &Packed) -> Self {
-        let places = packed.light_places();
-        let huge = places.iter().any(|&place| place >= packed.scene.factored_count);
-        match *places {
-            [] => Self::None,
-            [place] => Self::One { place, huge },
-            _ => Self::Many { huge },
-        }
-    }
-
-    /// The place of the only light there is.
-    fn only(self) -> Option<u32> {
-        if let Self::One { place, .. } = self { Some(place) } else { None }
-    }
-
-    fn any_huge(self) -> bool {
-        matches!(self, Self::One { huge: true, .. } | Self::Many { huge: true })
-    }
 }
 
 /// What one kernel is composed for. It does not depend on which samples are traced.
@@ -153,24 +55,39 @@ pub struct Kernel {
     pub estimator: Estimator,
     /// The effects that it simulates.
     pub effects: Effects,
-    /// How it searches for the nearest hit.
-    pub nearest: Nearest,
-    /// The lights.
-    pub lights: Lights,
+    /// The forms of a few spheres, in the order of the scene file, where the searches among
+    /// them are written out; none where they are loops.
+    pub written: Option<Vec<Form>>,
+    /// Whether spheres and lights are in storage buffers, not in uniform ones.
+    pub stored: bool,
+    /// Place of the only light there is to sample.
+    pub light: u32,
+    /// Most items that wait while a ray goes through the hierarchy.
+    pub stack: u32,
 }
 
 impl Kernel {
-    /// The kernel that a packed scene calls for.
+    /// The kernel with these effects for a packed scene: those that the scene calls for
+    /// ([`Effects::of`]), or more.
     #[must_use]
-    pub fn of(scene: &Scene, viewpoint: &Viewpoint, packed: &Packed) -> Self {
+    pub fn of(scene: &Scene, effects: Effects, packed: &Packed) -> Self {
+        let few = !packed.is_stored() && packed.forms.len() <= UNROLLED_SPHERES;
         Self {
             size: scene.size(),
             bounces: scene.settings().bounces(),
             estimator: scene.settings().estimator(),
-            effects: Effects::of(scene, viewpoint),
-            nearest: Nearest::of(&packed.forms),
-            lights: Lights::of(packed),
+            effects,
+            written: few.then(|| packed.forms.clone()),
+            stored: packed.is_stored(),
+            light: packed.lights.first().copied().unwrap_or(0),
+            stack: packed.stack,
         }
+    }
+
+    /// The same with loops over the spheres, however few there are.
+    #[must_use]
+    pub fn looped(self) -> Self {
+        Self { written: None, ..self }
     }
 
     /// The WGSL of the entry point `render`.
@@ -181,11 +98,12 @@ impl Kernel {
             "const TILE_WIDTH: u32 = {width}u;\nconst TILE_HEIGHT: u32 = {height}u;\n\
              const TILE_SAMPLES: u32 = {samples}u;\n"
         );
-        let mut parts = self.path();
-        parts.push(follow(&steps(self.bounces)));
-        let last = [fragment!("film"), fragment!("ledger"), &tile, fragment!("render")];
-        parts.extend(last.map(str::to_owned));
-        parts.join("\n")
+        let mut text = self.path();
+        text.push(follow(&self.steps(), self.loads()));
+        text.add(fragment!("film")).add(fragment!("ledger"));
+        text.push(tile);
+        text.add(fragment!("render"));
+        text.into_wgsl()
     }
 
     /// The WGSL of the entry point `replay`, which traces one sample with the text that
@@ -193,118 +111,198 @@ impl Kernel {
     /// recording among several lights takes lavapipe's compiler minutes.
     #[must_use]
     pub fn replay_wgsl(&self) -> String {
-        let mut parts = self.path();
-        parts.push(follow(&looped("observe")));
-        let connection = if self.samples_lights() {
+        let mut text = self.path();
+        if !self.scatters() {
+            self.surface(&mut text);
+        }
+        text.push(follow(&looped("observe"), self.loads()));
+        text.add(if self.effects.has(Effect::Connections) {
             fragment!("replay_connected")
         } else {
             fragment!("replay_blind")
-        };
-        parts.extend([connection, fragment!("replay")].map(str::to_owned));
-        parts.join("\n")
+        });
+        text.add(fragment!("replay"));
+        text.into_wgsl()
+    }
+
+    fn scatters(&self) -> bool {
+        self.effects.has(Effect::Diffuse) || self.effects.has(Effect::Glossy)
+    }
+
+    /// The statements that take a path from segment to segment.
+    fn steps(&self) -> String {
+        match self.bounces {
+            _ if !self.scatters() => written_out(0),
+            few @ ..=UNROLLED_BOUNCES => written_out(few),
+            _ => looped("advance"),
+        }
+    }
+
+    /// What is loaded once a path.
+    fn loads(&self) -> &'static str {
+        if self.written.is_some() { search::LOAD } else { "" }
     }
 
     /// What advances a path by one segment.
-    fn path(&self) -> Vec<String> {
-        let mut parts = self.tracing(self.diffuse());
-        if self.samples_lights() {
-            parts.extend(self.connecting());
-            parts.push(
-                match self.estimator {
-                    Estimator::Mis => fragment!("strategy_mis"),
-                    _ => fragment!("strategy_explicit"),
-                }
-                .to_owned(),
-            );
-            parts.push(fragment!("path_connected").to_owned());
+    fn path(&self) -> Text {
+        let mut text = Text::default();
+        self.scene(&mut text);
+        self.hits(&mut text);
+        if !self.scatters() {
+            text.add(fragment!("path_direct"));
+            return text;
+        }
+        self.surface(&mut text);
+        self.scattering(&mut text);
+        if self.effects.has(Effect::Connections) {
+            self.connecting(&mut text);
+            text.add(fragment!("path_connected"));
         } else {
-            parts.push(fragment!("path_blind").to_owned());
+            text.add(fragment!("path_blind"));
         }
-        parts
+        text
     }
 
-    /// Whether there is a light to sample and a surface to sample it from.
-    fn samples_lights(&self) -> bool {
-        let from_here = match self.estimator {
-            Estimator::Implicit | Estimator::Cosine => false,
-            Estimator::Explicit => self.effects.diffuse,
-            Estimator::Mis => true,
-        };
-        from_here && self.lights != Lights::None
-    }
-
-    /// How diffuse surfaces are sampled.
-    fn diffuse(&self) -> &'static str {
-        match self.estimator {
-            Estimator::Implicit => fragment!("diffuse_uniform"),
-            _ => fragment!("diffuse_cosine"),
-        }
-    }
-
-    /// What every path needs.
-    fn tracing(&self, diffuse: &str) -> Vec<String> {
-        let side =
-            if self.effects.interior { fragment!("interior") } else { fragment!("exterior") };
-        let scatter = match (self.effects.diffuse, self.effects.glossy) {
-            (true, true) => fragment!("scatter_both"),
-            (false, true) => fragment!("scatter_glossy"),
-            (_, false) => fragment!("scatter_diffuse"),
-        };
-        let constants = format!(
+    /// The scene's buffers, and random numbers, which are keyed by its seed.
+    fn scene(&self, text: &mut Text) {
+        text.push(format!(
             "const WIDTH: u32 = {}u;\nconst HEIGHT: u32 = {}u;\nconst BOUNCES: u32 = {}u;\n",
             self.size.width(),
             self.size.height(),
             self.bounces
-        );
-        [
-            &constants,
-            fragment!("scene"),
-            fragment!("rng"),
-            fragment!("math"),
-            fragment!("sphere"),
-            side,
-            fragment!("nearest"),
-            &self.nearest.wgsl(),
-            fragment!("sampling"),
-            fragment!("material"),
-            diffuse,
-            scatter,
-            fragment!("trace"),
-        ]
-        .map(str::to_owned)
-        .to_vec()
+        ));
+        text.add(fragment!("scene"));
+        text.add(if self.stored {
+            fragment!("spheres_storage")
+        } else {
+            fragment!("spheres_uniform")
+        });
+        text.add(fragment!("rng")).add(fragment!("camera"));
+    }
+
+    /// What a ray meets.
+    fn hits(&self, text: &mut Text) {
+        text.add(fragment!("sphere"));
+        if self.effects.has(Effect::Interior) {
+            text.add(fragment!("exit")).add(fragment!("interior"));
+        } else {
+            text.add(fragment!("exterior"));
+        }
+        text.add(fragment!("nearest"));
+        if self.effects.has(Effect::Factored) {
+            text.add(fragment!("factored"));
+        }
+        if self.effects.has(Effect::Anchored) {
+            text.add(fragment!("anchored"));
+        }
+        if self.effects.has(Effect::Hierarchy) {
+            text.push(format!("const STACK: u32 = {}u;\n", self.stack.max(1)));
+            text.add(fragment!("hierarchy"));
+        }
+        search::nearest(text, self.effects, self.written.as_deref());
+    }
+
+    /// The place where a ray meets a surface.
+    fn surface(&self, text: &mut Text) {
+        text.add(fragment!("surface"));
+        text.add(match (self.effects.has(Effect::Factored), self.effects.has(Effect::Anchored)) {
+            (true, true) => fragment!("point_both"),
+            (false, true) => fragment!("point_anchored"),
+            (_, false) => fragment!("point_factored"),
+        });
+        text.add(if self.effects.has(Effect::Interior) {
+            fragment!("facing_interior")
+        } else {
+            fragment!("facing_exterior")
+        });
+    }
+
+    /// How a path goes on from there.
+    fn scattering(&self, text: &mut Text) {
+        let (diffuse, glossy) = (self.effects.has(Effect::Diffuse), self.effects.has(Effect::Glossy));
+        text.add(fragment!("azimuth")).add(fragment!("sampling")).add(fragment!("material"));
+        if diffuse && self.estimator == Estimator::Implicit {
+            text.add(fragment!("hemisphere_uniform")).add(fragment!("diffuse_uniform"));
+        } else if diffuse {
+            text.add(fragment!("hemisphere_cosine")).add(fragment!("diffuse_cosine"));
+        }
+        if glossy {
+            text.add(fragment!("exponential")).add(fragment!("lobe"));
+        }
+        text.add(match (diffuse, glossy) {
+            (true, true) => fragment!("scatter_both"),
+            (false, true) => fragment!("scatter_glossy"),
+            (_, false) => fragment!("scatter_diffuse"),
+        });
     }
 
     /// What a path needs besides where it samples lights.
-    fn connecting(&self) -> Vec<String> {
-        // Glossy surfaces are no place for `explicit` to sample lights.
-        let glossy = self.effects.glossy && self.estimator == Estimator::Mis;
-        let evaluate = match (self.effects.diffuse, glossy) {
-            (true, true) => fragment!("evaluate_both"),
-            (false, true) => fragment!("evaluate_glossy"),
-            (_, false) => fragment!("evaluate_diffuse"),
-        };
-        let side = if self.effects.interior {
+    fn connecting(&self, text: &mut Text) {
+        self.worth(text);
+        text.add(fragment!("light"));
+        let huge = self.effects.has(Effect::AnchoredLight);
+        if self.effects.has(Effect::FactoredLight) {
+            text.add(fragment!("cone_factored"));
+            text.add(if huge { fragment!("light_both") } else { fragment!("light_factored") });
+        } else {
+            text.add(fragment!("light_anchored"));
+        }
+        if huge {
+            text.add(fragment!("cone_anchored"));
+        }
+        text.add(if self.effects.has(Effect::Interior) {
             fragment!("light_interior")
         } else {
             fragment!("light_exterior")
-        };
-        let form = if self.lights.any_huge() {
-            fragment!("light_both")
-        } else {
-            fragment!("light_factored")
-        };
-        let pick = match self.lights.only() {
-            Some(place) => format!("const LIGHT: u32 = {place}u;\n\n") + fragment!("pick_one"),
-            None => fragment!("pick_many").to_owned(),
-        };
-        let occluded = match &self.nearest {
-            Nearest::Loop => fragment!("occluded_loop").to_owned(),
-            Nearest::Unrolled(forms) => unrolled::occluded(forms, self.lights.only()),
-        };
-        [fragment!("evaluate"), evaluate, fragment!("light"), form, side, &pick, &occluded]
-            .map(str::to_owned)
-            .to_vec()
+        });
+        self.pick(text);
+        search::occluded(text, self.effects, self.written.as_deref(), self.only_light());
+        text.add(match self.estimator {
+            Estimator::Mis => fragment!("strategy_mis"),
+            _ => fragment!("strategy_explicit"),
+        });
+    }
+
+    /// What the direction to a light is worth; glossy surfaces are no place for `explicit` to
+    /// sample lights.
+    fn worth(&self, text: &mut Text) {
+        let glossy = self.effects.has(Effect::Glossy) && self.estimator == Estimator::Mis;
+        let diffuse = self.effects.has(Effect::Diffuse);
+        text.add(fragment!("evaluate"));
+        if diffuse {
+            text.add(fragment!("worth_diffuse"));
+        }
+        if glossy {
+            text.add(fragment!("worth_glossy"));
+        }
+        text.add(match (diffuse, glossy) {
+            (true, true) => fragment!("evaluate_both"),
+            (false, true) => fragment!("evaluate_glossy"),
+            (_, false) => fragment!("evaluate_diffuse"),
+        });
+    }
+
+    /// Which light is sampled.
+    fn pick(&self, text: &mut Text) {
+        match self.only_light() {
+            Some(place) => {
+                text.push(format!("const LIGHT: u32 = {place}u;\n"));
+                text.add(fragment!("pick_one"));
+            }
+            None => {
+                text.add(if self.stored {
+                    fragment!("lights_storage")
+                } else {
+                    fragment!("lights_uniform")
+                });
+                text.add(fragment!("pick_many"));
+            }
+        }
+    }
+
+    /// The place of the only light there is to sample.
+    fn only_light(&self) -> Option<u32> {
+        (!self.effects.has(Effect::Pick)).then_some(self.light)
     }
 }
 
@@ -315,38 +313,17 @@ impl Kernel {
 /// Never: 512×512 is a picture.
 #[must_use]
 pub fn probe_source() -> String {
-    let kernel = Kernel {
+    let mut text = Kernel {
         size: ImageSize::new(512, 512).expect("a picture"),
         bounces: 2,
         estimator: Estimator::Mis,
-        effects: Effects::ALL,
-        nearest: Nearest::Loop,
-        lights: Lights::Many { huge: true },
-    };
-    let mut parts = kernel.tracing(fragment!("diffuse_uniform"));
-    parts.extend(kernel.connecting());
-    let last = [
-        fragment!("strategy_mis"),
-        fragment!("path_connected"),
-        fragment!("film"),
-        fragment!("probe"),
-    ];
-    parts.extend(last.map(str::to_owned));
-    parts.join("\n")
-}
-
-/// Parses and validates WGSL as wgpu would, with the features that candor asks for.
-///
-/// # Errors
-/// naga's message, with the place in the source.
-pub fn validate(source: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), String> {
-    let module =
-        naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
-    let info = naga::valid::Validator::new(
-        naga::valid::ValidationFlags::all(),
-        naga::valid::Capabilities::empty(),
-    )
-    .validate(&module)
-    .map_err(|error| error.emit_to_string(source))?;
-    Ok((module, info))
+        effects: Effects::ALL.without(Effect::Hierarchy),
+        written: None,
+        stored: false,
+        light: 0,
+        stack: 0,
+    }
+    .path();
+    text.add(fragment!("film")).add(fragment!("probe"));
+    text.into_wgsl()
 }

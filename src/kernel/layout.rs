@@ -41,7 +41,7 @@ pub struct Sphere {
     pub inside: u32,
 }
 
-/// The whole scene.
+/// The scene but for its spheres.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Scene {
@@ -51,7 +51,7 @@ pub struct Scene {
     pub seed: u32,
     /// Unit view direction.
     pub forward: [f32; 3],
-    /// Spheres in factored form; they come first.
+    /// Spheres in factored form; they come before those in anchored form.
     pub factored_count: u32,
     /// Half the picture's width on the plane at distance 1.
     pub right: [f32; 3],
@@ -67,12 +67,33 @@ pub struct Scene {
     pub light_count: u32,
     /// How far before the camera rays start, in kernel units; 0 unless the camera is far away.
     pub approach: f32,
+    /// Spheres under the hierarchy; they come first of all.
+    pub hierarchy_count: u32,
+    /// No coordinate of the hierarchy's boxes is larger, in kernel units.
+    pub reach: f32,
     /// Implicit in WGSL.
-    pub padding: u32,
-    /// Places of the emitters in `spheres`.
-    pub lights: [u32; SPHERE_CAPACITY],
-    /// Factored ones first, each group in the order of the scene file.
-    pub spheres: [Sphere; SPHERE_CAPACITY],
+    pub padding: [u32; 3],
+}
+
+/// A node of the hierarchy: up to four children and their boxes, on a grid of 255 cubes a
+/// side from `origin` on.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Node {
+    /// Where the grid starts, in kernel units.
+    pub origin: [f32; 3],
+    /// From the low end: four bits for each child, 0 for none, 15 for a node, otherwise how
+    /// many spheres there are; then the biased exponent of the grid's step, 8 bits, as that
+    /// of an `f32`.
+    pub kinds: u32,
+    /// Low corners, a word for each axis, a byte for each child.
+    pub low: [u32; 3],
+    /// Place of the first child that is a node; the others follow.
+    pub first_node: u32,
+    /// High corners.
+    pub high: [u32; 3],
+    /// Place of the first sphere of the first child that is none; the others follow.
+    pub first_sphere: u32,
 }
 
 /// The work of one dispatch.

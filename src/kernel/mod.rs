@@ -3,8 +3,15 @@
 mod compose;
 pub mod layout;
 mod pack;
+mod search;
+mod text;
+mod tile;
 mod unrolled;
+mod validate;
+mod wide;
 
-pub use compose::{Kernel, Lights, Nearest, Tile, UNROLLED_SPHERES, probe_source, validate};
+pub use compose::{Kernel, UNROLLED_SPHERES, probe_source};
 pub use layout::SPHERE_CAPACITY;
-pub use pack::{Form, KernelUnits, Packed, TooManySpheres, check_count, pack};
+pub use pack::{KernelUnits, Packed, pack};
+pub use tile::Tile;
+pub use validate::validate;

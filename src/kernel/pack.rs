@@ -1,18 +1,13 @@
 //! A validated scene in kernel units, ready for the device.
 
 use super::layout::{self, SPHERE_CAPACITY};
+use super::wide::Wide;
+use crate::effects::{Effect, Effects};
 use crate::film::SampleScale;
+use crate::hierarchy::{Bounds, Hierarchy};
 use crate::scene::{Scene, Sphere, Surface};
-use crate::viewpoint::Viewpoint;
+use crate::viewpoint::{Form, Viewpoint};
 use glam::DVec3;
-
-/// The scene has more spheres than the uniform buffer holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the scene has {0} spheres; this version traces at most {SPHERE_CAPACITY} on a device \
-     (--device cpu traces any number)"
-)]
-pub struct TooManySpheres(pub usize);
 
 /// From scene units to kernel units: `(p - focus)·2^-exponent`, so that the extent lies
 /// in [1, 2). Scaling by a power of two rounds nothing.
@@ -42,91 +37,93 @@ impl KernelUnits {
     }
 }
 
-/// A sphere that rays start farther from than this many radii is small, whatever the
-/// extent: the anchored discriminant is off by 3u(distance/R)², the factored miss distance
-/// by 3u(distance/R) of the radius, and they meet near six radii.
-const SMALL_FROM: f64 = 8.0;
-
-/// How a sphere is intersected.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// By centre and radius: spheres up to the scene's extent, and far ones.
-    Factored,
-    /// By curvature and gradient at the focus: larger ones.
-    Anchored,
-}
-
 /// A packed scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Packed {
     /// What goes into the uniform buffer.
-    pub scene: Box<layout::Scene>,
+    pub scene: layout::Scene,
+    /// Those under the hierarchy leaf by leaf, then the others in factored form, then those in
+    /// anchored form, the last two in the order of the scene file.
+    pub spheres: Vec<layout::Sphere>,
+    /// Places of the emitters among them.
+    pub lights: Vec<u32>,
+    /// The hierarchy; empty where there is none.
+    pub nodes: Vec<layout::Node>,
+    /// Most items that wait while a ray goes through the hierarchy.
+    pub stack: u32,
     /// Form of every sphere, in the order of the scene file.
     pub forms: Vec<Form>,
 }
 
 impl Packed {
-    /// Places of the lights in the uniform buffer.
+    /// Whether spheres and lights go into storage buffers, not into uniform ones.
     #[must_use]
-    pub fn light_places(&self) -> &[u32] {
-        &self.scene.lights[..self.scene.light_count as usize]
+    pub fn is_stored(&self) -> bool {
+        !self.nodes.is_empty() || self.spheres.len() > SPHERE_CAPACITY
     }
 }
 
-/// Checks that the uniform buffer holds all spheres.
-///
-/// # Errors
-/// If there are more than [`SPHERE_CAPACITY`].
-pub fn check_count(scene: &Scene) -> Result<(), TooManySpheres> {
-    let count = scene.spheres().len();
-    if count > SPHERE_CAPACITY { Err(TooManySpheres(count)) } else { Ok(()) }
-}
-
-/// Packs a scene for the device.
-///
-/// # Errors
-/// If it has more than [`SPHERE_CAPACITY`] spheres.
-pub fn pack(
-    scene: &Scene,
-    viewpoint: &Viewpoint,
-    scale: SampleScale,
-) -> Result<Packed, TooManySpheres> {
+/// Packs a scene for the device: with a hierarchy, if that is among the effects and there is
+/// a sphere for it.
+#[must_use]
+pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: SampleScale) -> Packed {
     let spheres = scene.spheres();
-    check_count(scene)?;
     let units = KernelUnits::of(viewpoint);
-    let forms: Vec<Form> = spheres.iter().map(|s| form_of(s, scene, viewpoint)).collect();
-    let of_form = |wanted| {
-        let matches = std::iter::zip(0.., &forms).filter(move |(_, form)| **form == wanted);
-        matches.map(|(index, _): (usize, _)| index)
-    };
+    let (forms, inside) = (viewpoint.forms(), viewpoint.inside());
+    let packed_sphere =
+        |&index: &usize| pack_sphere(&spheres[index], index, forms[index], inside[index], &units);
+    let is_small = |&index: &usize| forms[index] == Form::Factored && !inside[index];
+    let (small, large): (Vec<usize>, Vec<usize>) = (0..spheres.len())
+        .partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
+    let small: Vec<layout::Sphere> = small.iter().map(packed_sphere).collect();
+    let boxes: Vec<Bounds> = small.iter().map(bounds).collect();
+    let wide = Wide::of(&Hierarchy::build(&boxes));
+    let of_form = |wanted| large.iter().filter(move |&&index| forms[index] == wanted);
 
-    let mut packed: Box<layout::Scene> = bytemuck::zeroed_box();
-    pack_camera(&mut packed, scene, viewpoint, &units);
-    for (place, index) in of_form(Form::Factored).chain(of_form(Form::Anchored)).enumerate() {
-        let inside = viewpoint.inside()[index];
-        packed.spheres[place] = pack_sphere(&spheres[index], index, forms[index], inside, &units);
+    let mut packed: Vec<layout::Sphere> = wide.order.iter().map(|&i| small[i as usize]).collect();
+    packed.extend(of_form(Form::Factored).map(packed_sphere));
+    let factored_count = word(packed.len());
+    packed.extend(of_form(Form::Anchored).map(packed_sphere));
+
+    let mut header: layout::Scene = bytemuck::Zeroable::zeroed();
+    pack_camera(&mut header, scene, viewpoint, &units);
+    header.hierarchy_count = word(wide.order.len());
+    header.reach = boxes.iter().map(reach).fold(0.0, f32::max);
+    header.factored_count = factored_count;
+    header.sphere_count = word(packed.len());
+    header.seed = scene.settings().seed();
+    header.film_shift = scale.shift();
+    header.bound_bits = scale.bound().to_bits();
+    let lights = lights(&packed);
+    header.light_count = word(lights.len());
+    Packed {
+        scene: header,
+        spheres: packed,
+        lights,
+        nodes: wide.nodes,
+        stack: wide.stack,
+        forms: forms.to_vec(),
     }
-    pack_lights(&mut packed, spheres.len());
-    packed.factored_count = word(of_form(Form::Factored).count());
-    packed.sphere_count = word(spheres.len());
-    packed.seed = scene.settings().seed();
-    packed.film_shift = scale.shift();
-    packed.bound_bits = scale.bound().to_bits();
-    Ok(Packed { scene: packed, forms })
 }
 
-fn form_of(sphere: &Sphere, scene: &Scene, viewpoint: &Viewpoint) -> Form {
-    let distance = viewpoint.ray_start(scene.camera()).distance(sphere.center());
-    let small = sphere.radius() <= viewpoint.extent() || distance > SMALL_FROM * sphere.radius();
-    if small { Form::Factored } else { Form::Anchored }
+/// Room in a box around a sphere, in radii. Where a ray starts close to a sphere, the constant
+/// term of its quadratic cancels, and a hit may come out too near by 2√(5u) of a radius
+/// (DESIGN.md, "The hierarchy").
+const ROOM: f64 = 1.0 / 512.0;
+
+fn bounds(sphere: &layout::Sphere) -> Bounds {
+    let center = DVec3::from(sphere.position.map(f64::from));
+    Bounds::of_sphere(center, (1.0 + ROOM) * f64::from(sphere.size))
 }
 
-/// Lists the places of the emitters among the packed spheres.
-fn pack_lights(packed: &mut layout::Scene, spheres: usize) {
-    let emits = |place: &usize| packed.spheres[*place].kind == layout::KIND_EMITTER;
-    let places: Vec<u32> = (0..spheres).filter(emits).map(word).collect();
-    packed.lights[..places.len()].copy_from_slice(&places);
-    packed.light_count = word(places.len());
+fn reach(bounds: &Bounds) -> f32 {
+    bounds.low.abs().max(bounds.high.abs()).max_element()
+}
+
+/// Places of the emitters among the packed spheres.
+fn lights(spheres: &[layout::Sphere]) -> Vec<u32> {
+    let emits = |&(_, sphere): &(u32, &layout::Sphere)| sphere.kind == layout::KIND_EMITTER;
+    (0..).zip(spheres).filter(emits).map(|(place, _)| place).collect()
 }
 
 fn pack_camera(
@@ -181,7 +178,7 @@ fn pack_sphere(
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the device computes in f32")]
-fn float(x: f64) -> f32 {
+pub(super) fn float(x: f64) -> f32 {
     x as f32
 }
 
@@ -189,6 +186,6 @@ fn floats(v: DVec3) -> [f32; 3] {
     v.to_array().map(float)
 }
 
-fn word(count: usize) -> u32 {
-    u32::try_from(count).expect("at most SPHERE_CAPACITY spheres")
+pub(super) fn word(count: usize) -> u32 {
+    u32::try_from(count).expect("memory for fewer")
 }

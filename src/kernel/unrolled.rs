@@ -1,6 +1,6 @@
 //! Searches among a few spheres, in straight-line code, one statement each.
 
-use super::pack::Form;
+use crate::viewpoint::Form;
 
 /// Places of the spheres in the uniform buffer, with their forms, in the order of the
 /// scene file: factored spheres come first there, each group in the order of the file.

@@ -1,14 +1,16 @@
 //! Where the scene is and from which side its spheres are seen.
 //!
-//! Two decisions that everything downstream shares, made once in `f64`. The *focus*
+//! Three decisions that everything downstream shares, made once in `f64`. The *focus*
 //! and *extent* say around which point and at which scale the kernel computes. The
 //! *sides* say which spheres are seen from inside: surfaces are opaque and reflect to
 //! the side that the light came from, so a path never crosses one and sees each sphere
-//! from the side that the camera is on.
+//! from the side that the camera is on. The *forms* say which spheres are huge.
 
 mod approach;
+mod form;
 
 pub use approach::corner_angle;
+pub use form::Form;
 
 use crate::scene::{Camera, Scene, Sphere};
 use glam::DVec3;
@@ -23,13 +25,14 @@ const ON_SURFACE: f64 = 16.0 * f64::EPSILON;
 /// the digits are spent where the scene is, and far things keep their relative precision.
 const FAR: f64 = 64.0;
 
-/// Focus, extent and sides of a scene.
+/// Focus, extent, sides and forms of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Viewpoint {
     focus: DVec3,
     extent: f64,
     inside: Vec<bool>,
     approach: f64,
+    forms: Vec<Form>,
 }
 
 impl Viewpoint {
@@ -44,7 +47,9 @@ impl Viewpoint {
         let inside: Vec<bool> = scene.spheres().iter().map(|s| sees_inside(camera, s)).collect();
         let is_far = camera.position().distance(focus) > FAR * extent;
         let approach = if is_far { approach::approach(scene, &inside, extent) } else { 0.0 };
-        Self { focus, extent, inside, approach }
+        let start = camera.position() + approach * camera.forward();
+        let forms = scene.spheres().iter().map(|s| Form::of(s, extent, start)).collect();
+        Self { focus, extent, inside, approach, forms }
     }
 
     /// The point around which the kernel computes.
@@ -72,6 +77,12 @@ impl Viewpoint {
     #[must_use]
     pub fn ray_start(&self, camera: &Camera) -> DVec3 {
         camera.position() + self.approach * camera.forward()
+    }
+
+    /// For every sphere, how it is intersected on a device.
+    #[must_use]
+    pub fn forms(&self) -> &[Form] {
+        &self.forms
     }
 
     /// For every sphere, whether paths see its inner side.

@@ -1,28 +1,9 @@
-// Elementary functions with bounds of their own. WGSL grants sin and cos an
-// absolute error of 2^-11 and log one of 2^-21 near 1, which would show in narrow
-// lobes; these polynomials use only + - * / and integer operations.
+// Logarithm and exponential of lobes, with bounds of their own: WGSL grants log an absolute
+// error of 2^-21 near 1, where a narrow lobe has all its samples. These use only + - * /
+// and integer operations.
 
 const LN_2_HIGH: f32 = 0.693145751953125;
 const LN_2_LOW: f32 = 1.42860682030941723212e-6;
-
-// (sin 2πu, cos 2πu) for u in [0, 1). The quadrant is taken off exactly; on the
-// rest, |x| <= π/4, minimax polynomials (Cephes sinf.c, Moshier 1989).
-fn sincos_2pi(u: f32) -> vec2<f32> {
-    let quadrant = floor(4.0 * u + 0.5);
-    let x = (4.0 * u - quadrant) * 1.5707963267948966;
-    let x2 = x * x;
-    let s = x + x * x2 * (-1.6666654611e-1 + x2 * (8.3321608736e-3 + x2 * -1.9515295891e-4));
-    let c = 1.0 - 0.5 * x2
-        + x2 * x2 * (4.166664568298827e-2 + x2 * (-1.388731625493765e-3 + x2 * 2.443315711809948e-5));
-    let q = u32(quadrant);
-    let swapped = (q & 1u) != 0u;
-    let sine = select(s, c, swapped);
-    let cosine = select(c, s, swapped);
-    return vec2<f32>(
-        select(sine, -sine, (q & 2u) != 0u),
-        select(cosine, -cosine, ((q + 1u) & 2u) != 0u),
-    );
-}
 
 // -log(1 - u) for u in [0, 1). With 1 - u = 2^k (1 + f), 1 + f in [√½, √2), s = f/(2 + f),
 // the series log(1 + f) = 2s + 2s³/3 + … is summed to s⁹; |s| <= 0.1716. Where k is 0, f is
@@ -61,10 +42,4 @@ fn exponential_minus(x: f32) -> Exponential {
 fn one_minus_exp_minus(x: f32) -> f32 {
     let e = exponential_minus(x);
     return (1.0 - e.power) - e.power * e.rest;
-}
-
-// exp(-x) for x in [0, 80]; beyond, less than 2^-115, which counts as 0.
-fn exp_minus(x: f32) -> f32 {
-    let e = exponential_minus(min(x, 80.0));
-    return select(e.power + e.power * e.rest, 0.0, x > 80.0);
 }
