@@ -133,6 +133,7 @@ impl Kernel {
     fn steps(&self) -> String {
         match self.bounces {
             _ if !self.scatters() => written_out(0),
+            _ if self.effects.has(Effect::Hierarchy) => looped("advance"),
             few @ ..=UNROLLED_BOUNCES => written_out(few),
             _ => looped("advance"),
         }

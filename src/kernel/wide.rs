@@ -23,7 +23,7 @@ pub(super) struct Wide {
     pub(super) nodes: Vec<layout::Node>,
     /// Indices of the spheres, leaf by leaf.
     pub(super) order: Vec<u32>,
-    /// Most items that wait at a time while a ray goes through it.
+    /// Most siblings that wait at a time while a ray goes through it.
     pub(super) stack: u32,
 }
 
@@ -32,7 +32,7 @@ struct Pending {
     /// In the binary hierarchy.
     node: usize,
     place: usize,
-    /// Items that wait when a ray comes here.
+    /// How many siblings wait when a ray comes here.
     waiting: u32,
 }
 
@@ -55,7 +55,8 @@ impl Wide {
         let children = children(binary, next.node);
         let (first_node, first_sphere) = (self.nodes.len(), self.order.len());
         let mut grid = Grid::of(binary.nodes()[next.node].bounds);
-        let waiting = next.waiting + word(children.len()) - 1;
+        // Siblings wait together.
+        let waiting = next.waiting + 1;
         self.stack = self.stack.max(waiting);
         for (slot, &child) in children.iter().enumerate() {
             let node = &binary.nodes()[child];
@@ -66,7 +67,10 @@ impl Wide {
                 self.nodes.push(bytemuck::Zeroable::zeroed());
             } else {
                 let first = node.first as usize;
+                // In the order of the scene file, so that at equal distances the first wins.
+                let end = self.order.len();
                 self.order.extend(&binary.order()[first..first + node.count as usize]);
+                self.order[end..].sort_unstable();
             }
         }
         let mut node = grid.node;
