@@ -125,6 +125,18 @@ struct Way {
 // Siblings that wait.
 var<private> waiting: array<u32, STACK>;
 
+fn holds_node(way: Way) -> bool {
+    return (way.item & 15u) == A_NODE;
+}
+
+fn holds_spheres(way: Way) -> bool {
+    return way.item != NOTHING && !holds_node(way);
+}
+
+fn is_done(way: Way) -> bool {
+    return way.item == NOTHING && way.height == 0u && !has_more(way.siblings);
+}
+
 // Goes down into a node: the nearest child that the ray meets is next, the others wait.
 fn descend(way: ptr<function, Way>, climber: Climber, limit: f32) {
     let place = (*way).item >> 4u;

@@ -26,16 +26,17 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
     let climber = climber(ray);
     var best = Hit(MISS, NO_SPHERE);
     var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
-    while way.item != NOTHING && best.sphere != UNFINISHED {
-        if (way.item & 15u) == A_NODE {
-            descend(&way, climber, best.distance);
-        } else {
+    while !is_done(way) && best.sphere != UNFINISHED {
+        if holds_spheres(way) {
             best = nearest_of(way.item, best, ray, leaving);
             way.item = NOTHING;
         }
         go_on(&way);
+        if holds_node(way) {
+            descend(&way, climber, best.distance);
+        }
     }
-    if way.item != NOTHING {
+    if !is_done(way) {
         return Hit(MISS, UNFINISHED);
     }
     return best;

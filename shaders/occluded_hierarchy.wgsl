@@ -18,22 +18,17 @@ fn occluded_by(item: u32, ray: Ray, leaving: u32, light: u32, distance: f32) -> 
 fn occluded_hierarchy(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool {
     let climber = climber(ray);
     var blocked = false;
-    var item = ROOT;
-    var height = 0u;
-    while item != NOTHING && !blocked {
-        if (item & 15u) == A_NODE {
-            let c = children(item >> 4u, climber, distance);
-            height = push(push(push(height, c.entry.w, c.item.w), c.entry.z, c.item.z), c.entry.y, c.item.y);
-            item = select(NOTHING, c.item.x, c.entry.x < MISS);
-        } else {
-            blocked = occluded_by(item, ray, leaving, light, distance);
-            item = NOTHING;
+    var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
+    while !is_done(way) && !blocked {
+        if holds_spheres(way) {
+            blocked = occluded_by(way.item, ray, leaving, light, distance);
+            way.item = NOTHING;
         }
-        if item == NOTHING && height > 0u {
-            height--;
-            item = waiting[height];
+        go_on(&way);
+        if holds_node(way) {
+            descend(&way, climber, distance);
         }
     }
-    unfinished = unfinished || (item != NOTHING && !blocked);
+    unfinished = unfinished || (!is_done(way) && !blocked);
     return blocked;
 }
