@@ -82,8 +82,7 @@ fn with_even_half(tree: &LightTree, walked: f64) -> f64 {
 
 /// A number below `count` by 64 random bits, each with the same chance but for `count`/2⁶⁴ of it.
 #[expect(clippy::cast_possible_truncation, reason = "less than `count`")]
-fn evenly(high: u32, low: u32, count: usize) -> usize {
-    let fraction = u64::from(high) << 32 | u64::from(low);
+fn evenly(fraction: u64, count: usize) -> usize {
     ((u128::from(fraction) * count as u128) >> 64) as usize
 }
 
@@ -98,7 +97,8 @@ pub(super) fn pick_leaf(
     let bits = random_bits(key, PICK_BLOCKS + bounce, seed);
     let count = tree.lights().len();
     let even = bits[0] >> 31 == 1;
-    let to = even.then(|| count + evenly(bits[1], bits[2], count));
+    let fraction = (u64::from(bits[1]) << 32) | u64::from(bits[2]);
+    let to = even.then(|| count + evenly(fraction, count));
     let Walk { node, chance } = walk(tree, point, to, bits);
     (node, with_even_half(tree, chance))
 }
@@ -153,11 +153,11 @@ mod tests {
     /// Points under the layer, over it and in it, with normals of any direction.
     fn points(count: u64) -> impl Iterator<Item = SurfacePoint> {
         (0..count).map(|index| {
-            let [x, y, z, _] = draw(index, 2);
-            let [u, v, side, _] = draw(index, 3);
-            let up = around(DVec3::Y, polar_hemisphere(u), v);
+            let place = DVec3::from_slice(&draw(index, 2));
+            let [turn, rise, side, _] = draw(index, 3);
+            let up = around(DVec3::Y, polar_hemisphere(rise), turn);
             SurfacePoint {
-                position: DVec3::new(10.0 * x - 5.0, 3.0 * y, 10.0 * z - 5.0),
+                position: DVec3::new(10.0, 3.0, 10.0) * place - DVec3::new(5.0, 0.0, 5.0),
                 normal: if side < 0.5 { up } else { -up },
             }
         })
@@ -241,10 +241,11 @@ mod tests {
     #[test]
     fn even_numbers_are_even() {
         for count in [1_usize, 2, 3, 257, 1_000_003] {
-            let at = |fraction: u128| evenly((fraction >> 32) as u32, fraction as u32, count);
-            assert_eq!((at(0), at((1 << 64) - 1)), (0, count - 1));
+            let at = |fraction| evenly(fraction, count);
+            assert_eq!((at(0), at(u64::MAX)), (0, count - 1));
             for number in [count / 3, count / 2, count - 1] {
                 let first = ((number as u128) << 64).div_ceil(count as u128);
+                let first = u64::try_from(first).expect("number is below count");
                 assert_eq!(at(first), number, "{count}");
                 assert!(number == 0 || at(first - 1) == number - 1, "{count}");
             }
