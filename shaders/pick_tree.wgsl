@@ -8,19 +8,13 @@ struct LightNode {
     radius: f32,
     // Radiance that makes the sphere as bright, from far away, as its lights together.
     brightness: f32,
-    // What lights contribute that look much the same from everywhere.
+    // What lights contribute that look much the same from everywhere in the scene.
     everywhere: f32,
     // Of a leaf: place of the light.
     light: u32,
 }
 
 @group(0) @binding(9) var<storage, read> light_tree: array<LightNode>;
-
-struct Pick {
-    light: u32,
-    // Probability of picking this light.
-    chance: f32,
-}
 
 // What a node's lights are taken to contribute. Within its sphere they may be in any
 // direction; its very centre has no axis.
@@ -90,18 +84,15 @@ fn evenly(high: u32, low: u32, count: u32) -> u32 {
     return whole.y + u32(whole.x + multiply(low, count).y < whole.x);
 }
 
-fn pick_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
-    // A block of its own, beyond those of the scatterings.
+fn walk_for_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     let bits = random_bits(key, PICK_BLOCKS + bounce);
     let leaf = scene.light_count + evenly(bits.y, bits.z, scene.light_count);
     let walk = walk_to(select(0u, leaf, (bits.x >> 31u) == 1u), point, bits);
     return Pick(light_tree[walk.node].light, with_even_half(walk.chance));
 }
 
-// An emitter has no exponent; the number of its leaf is there.
-fn chance_of(light: u32, point: SurfacePoint) -> f32 {
+// A light has no exponent; the number of its leaf is there.
+fn chance_in_tree(light: u32, point: SurfacePoint) -> f32 {
     let leaf = u32(spheres[light].exponent);
     return with_even_half(walk_to(leaf, point, vec4<u32>(0u)).chance);
 }
-
-const PICK_BLOCKS: u32 = 128u;

@@ -71,15 +71,7 @@ pub fn most_iterations(lights: usize) -> u64 {
 }
 
 impl LightTree {
-    /// The tree of a scene that samples more lights than are scanned.
-    #[must_use]
-    pub fn of(scene: &Scene, viewpoint: &Viewpoint) -> Option<Self> {
-        let many = places(scene).nth(SCANNED_LIGHTS).is_some();
-        (many && scene.settings().estimator().samples_lights())
-            .then(|| Self::over(scene, viewpoint))
-    }
-
-    /// The tree of a scene with any number of lights; without any it has no node.
+    /// The tree of a scene's lights; without any it has no node.
     #[must_use]
     pub fn over(scene: &Scene, viewpoint: &Viewpoint) -> Self {
         let leaf = |place| Leaf::of(scene, viewpoint, place);

@@ -2,6 +2,7 @@
 //! for laid out for it. It shares no packing with the kernel, so that a mistake in
 //! `src/kernel` cannot hide in both.
 
+use crate::effects::{Effect, Effects};
 use crate::light_tree::{LightTree, places};
 use crate::scene::{Estimator, Scene, Surface};
 use crate::viewpoint::Viewpoint;
@@ -55,7 +56,9 @@ impl PreparedScene {
             bounces: scene.settings().bounces(),
             estimator: scene.settings().estimator(),
             lights: places(scene).collect(),
-            light_tree: LightTree::of(scene, &viewpoint),
+            light_tree: Effects::of(scene, &viewpoint)
+                .has(Effect::LightTree)
+                .then(|| LightTree::over(scene, &viewpoint)),
             seed: scene.settings().seed(),
             spheres: sides
                 .map(|(sphere, &inside)| PreparedSphere {

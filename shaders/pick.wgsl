@@ -1,3 +1,14 @@
+// One of several lights, picked for a vertex.
+
+struct Pick {
+    light: u32,
+    // Probability of picking this light.
+    chance: f32,
+}
+
+// The blocks of random numbers from here on, beyond those of the scatterings, pick lights.
+const PICK_BLOCKS: u32 = 128u;
+
 // Largest cosine of a direction in a cone: cos(θ - σ) for an axis at the angle θ > σ from the
 // normal, never below 0.
 fn largest_cosine(cone: Cone, normal: vec3<f32>) -> f32 {
