@@ -2,8 +2,8 @@
 //! down the tree, in turns and as medians:
 //! `cargo bench --bench lights [-- --rounds N --device NAME --estimator E]`.
 //!
-//! A layer of lamps hangs over a floor with balls on it; the lamps' surface and power are the
-//! same in all for any number of them. Efficiency is one over error² times time, as a ratio to
+//! A layer of lamps hangs over a floor with balls on it, which the camera looks at from under the
+//! layer; the lamps' surface and power are the same in all for any number of them. Efficiency is one over error² times time, as a ratio to
 //! the scan's.
 
 #![allow(clippy::cast_precision_loss, reason = "rates and ratios for show")]
@@ -64,7 +64,7 @@ fn lamps(count: u32, estimator: Estimator) -> Scene {
     let radius = 0.5 / f64::from(count).sqrt();
     spheres.extend((0..count).map(|i| (place(2, i, 1.5), radius, light)));
     let spheres = spheres.into_iter().map(|(c, r, s)| Sphere::new(c, r, s).expect("a sphere"));
-    let camera = Camera::new(DVec3::new(0.0, 3.0, 9.0), DVec3::ZERO, DVec3::Y, 45.0);
+    let camera = Camera::new(DVec3::new(0.0, 1.3, 3.5), DVec3::new(0.0, 0.0, 0.5), DVec3::Y, 45.0);
     let settings = RenderSettings::default().with_bounces(2).expect("few bounces");
     Scene::new(
         camera.expect("a camera"),
