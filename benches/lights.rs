@@ -27,7 +27,7 @@ use glam::DVec3;
 use std::time::Instant;
 
 /// Numbers of lamps.
-const COUNTS: [u32; 9] = [10, 30, 100, 256, 500, 1000, 3000, 10_000, 100_000];
+const COUNTS: [u32; 10] = [10, 30, 64, 128, 256, 500, 1000, 3000, 10_000, 100_000];
 
 /// More of them are not scanned: the loops would come near lavapipe's limit.
 const MOST_SCANNED: u32 = 3000;

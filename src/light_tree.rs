@@ -15,7 +15,7 @@ use glam::DVec3;
 
 /// Up to this many lights are scanned, which takes longer but bounds each of them on its own
 /// (BENCHMARKS.md, "Many lights"). With more of them a tree is walked.
-pub const SCANNED_LIGHTS: usize = 256;
+pub const SCANNED_LIGHTS: usize = 128;
 
 /// Below this many lights, sorting them costs less than handing half of them to another thread.
 const PARALLEL_LIGHTS: usize = 4096;

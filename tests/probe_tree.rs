@@ -16,6 +16,7 @@ use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::effects::{Effect, Effects};
 use candor::gpu::probe::{Probe, Row};
 use candor::kernel::{Packed, layout::LightNode, pack, probe_source};
+use candor::light_tree::SCANNED_LIGHTS;
 use candor::scene::Scene;
 use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
@@ -37,10 +38,10 @@ fn packed(scene: &Scene) -> Packed {
 
 /// A probe that walks down the tree, however few lights there are.
 fn walking_probe() -> String {
-    let scanned = "const SCANNED_LIGHTS: u32 = 256u;";
+    let scanned = format!("const SCANNED_LIGHTS: u32 = {SCANNED_LIGHTS}u;");
     let text = probe_source();
-    assert_eq!(text.matches(scanned).count(), 1);
-    text.replace(scanned, "const SCANNED_LIGHTS: u32 = 0u;")
+    assert_eq!(text.matches(&scanned).count(), 1);
+    text.replace(&scanned, "const SCANNED_LIGHTS: u32 = 0u;")
 }
 
 /// A point that asks for a light.
@@ -177,7 +178,7 @@ fn judge_chances(packed: &Packed, wgsl: &str, points: &[Point]) -> (Vec<String>,
 #[test]
 fn chances_are_those_of_the_tree_and_none_is_small() {
     for (count, points_of_it) in [(2, 200), (3, 200), (5, 200), (17, 200), (64, 100), (300, 40)] {
-        let packed = packed(&lamp_layer(count));
+        let packed = packed(&lamp_layer(count, 4.0));
         let points = points(&packed, points_of_it);
         let (wrong, worst) = judge_chances(&packed, &walking_probe(), &points);
         println!("{count} lights: chances at {worst:.2} of their bound");
@@ -205,7 +206,7 @@ fn p_value(packed: &Packed, wgsl: &str, point: Point) -> f64 {
 
 #[test]
 fn picks_follow_their_chances() {
-    let packed = packed(&lamp_layer(300));
+    let packed = packed(&lamp_layer(300, 4.0));
     for point in points(&packed, 4) {
         let p = p_value(&packed, &walking_probe(), point);
         println!("{:?}: p = {p:.4}", point.position);
@@ -249,7 +250,7 @@ const FAULTS: [(&str, &str, &str); 8] = [
 
 #[test]
 fn faults_are_told() {
-    let packed = packed(&lamp_layer(256));
+    let packed = packed(&lamp_layer(256, 4.0));
     let points = points(&packed, 3);
     for (fault, from, to) in FAULTS {
         let right = walking_probe();
