@@ -260,7 +260,12 @@ const FAULTS: &[Faulty] = &[
                 "select(1.0 - chance, chance, goes_left)",
                 "select(chance, 1.0 - chance, goes_left)",
             ),
-            ("chance of another leaf", Mis, "u32(spheres[light].exponent)", "u32(spheres[light].exponent) ^ 7u"),
+            (
+                "chance of another leaf",
+                Mis,
+                "u32(spheres[light].exponent)",
+                "u32(spheres[light].exponent) ^ 7u",
+            ),
         ],
     ),
     ("crowd", coincident_crowd, &[("both of a place seen", Mis, " || earlier <= distance", "")]),

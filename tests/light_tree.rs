@@ -6,6 +6,7 @@ mod support {
 }
 
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
+use candor::effects::{Effect, Effects};
 use candor::light_tree::{LightTree, Node, SCANNED_LIGHTS, most_iterations};
 use candor::scene::{Estimator, Scene, Sphere};
 use candor::viewpoint::Viewpoint;
@@ -119,7 +120,7 @@ fn trees_are_for_many_lights_that_are_sampled() {
         let has = |scene: &Scene| {
             let settings = scene.settings().with_estimator(estimator);
             let scene = scene.clone().with_settings(settings);
-            LightTree::of(&scene, &Viewpoint::of(&scene)).is_some()
+            Effects::of(&scene, &Viewpoint::of(&scene)).has(Effect::LightTree)
         };
         assert!(!has(&few));
         assert_eq!(has(&many), estimator.samples_lights());

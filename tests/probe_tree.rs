@@ -8,25 +8,33 @@ mod support {
     pub mod gpu;
     pub mod light_scenes;
     pub mod scenes;
+    pub mod tracers;
 }
 
 use candor::bound::sample_scale;
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::effects::{Effect, Effects};
+use candor::gpu::GpuTracer;
 use candor::gpu::probe::{Probe, Row};
 use candor::kernel::{Packed, layout::LightNode, pack, probe_source};
 use candor::light_tree::SCANNED_LIGHTS;
-use candor::scene::Scene;
+use candor::scene::{Estimator, Scene};
 use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use support::light_scenes::lamp_layer;
+use support::tracers::film;
 
 const U: f64 = 1.0 / (1 << 24) as f64;
 
 /// Chance that a correct kernel fails the test in distribution.
 const FAMILY: f64 = 1e-6;
+
+/// Most lamps that are scanned.
+fn scanned() -> u32 {
+    u32::try_from(SCANNED_LIGHTS).expect("a few hundred")
+}
 
 /// The scene with its tree, however few its lights are, and with its spheres where the probe
 /// finds them.
@@ -38,10 +46,10 @@ fn packed(scene: &Scene) -> Packed {
 
 /// A probe that walks down the tree, however few lights there are.
 fn walking_probe() -> String {
-    let scanned = format!("const SCANNED_LIGHTS: u32 = {SCANNED_LIGHTS}u;");
+    let constant = format!("const SCANNED_LIGHTS: u32 = {}u;", scanned());
     let text = probe_source();
-    assert_eq!(text.matches(&scanned).count(), 1);
-    text.replace(&scanned, "const SCANNED_LIGHTS: u32 = 0u;")
+    assert_eq!(text.matches(&constant).count(), 1);
+    text.replace(&constant, "const SCANNED_LIGHTS: u32 = 0u;")
 }
 
 /// A point that asks for a light.
@@ -211,6 +219,23 @@ fn picks_follow_their_chances() {
         let p = p_value(&packed, &walking_probe(), point);
         println!("{:?}: p = {p:.4}", point.position);
         assert!(p > FAMILY / 4.0, "{point:?}: p = {p:e}");
+    }
+}
+
+/// The general kernel chooses by the number of lights.
+#[test]
+#[expect(clippy::single_range_in_vec_init, reason = "one range of samples")]
+fn the_general_kernel_has_the_same_bits() {
+    for scene in [lamp_layer(scanned(), 1.0), lamp_layer(scanned() + 1, 1.0)] {
+        let scene = scene.clone().with_settings(scene.settings().with_estimator(Estimator::Mis));
+        let own = Effects::of(&scene, &Viewpoint::of(&scene));
+        let other = if own.has(Effect::LightTree) { Effect::LightScan } else { Effect::LightTree };
+        let pixels = |effects| {
+            let tracer = GpuTracer::with_effects(&scene, support::gpu::open(), effects);
+            let mut tracer = tracer.expect("the device takes the scene");
+            film(&mut tracer, &[0..16]).pixels().to_vec()
+        };
+        assert!(pixels(own) == pixels(own.with(other)), "{} spheres", scene.spheres().len());
     }
 }
 
