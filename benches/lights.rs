@@ -121,7 +121,7 @@ fn row(scene: &Scene, count: u32, adapter: &Adapter, rounds: u64) -> String {
     let viewpoint = Viewpoint::of(scene);
     let own = Effects::of(scene, &viewpoint);
     let started = Instant::now();
-    let tree = LightTree::over(scene, &viewpoint);
+    let tree = LightTree::of(scene, &viewpoint);
     let built = started.elapsed().as_secs_f64() * 1e3;
     assert_eq!(tree.lights().len(), count as usize);
     let scan = own.with(Effect::LightScan).without(Effect::LightTree);

@@ -28,7 +28,7 @@ const PARALLEL_LIGHTS: usize = 4096;
 pub struct Node {
     /// Centre of a sphere around the lights.
     pub center: DVec3,
-    /// Its radius.
+    /// Its radius; 1 where there are none, so that nothing is divided by 0.
     pub radius: f64,
     /// Radiance that makes the sphere as bright, from far away, as its lights together:
     /// Σ L·r² over the square of the radius, L the brightest channel; 0 where there are none.
@@ -38,7 +38,14 @@ pub struct Node {
     pub everywhere: f64,
 }
 
-/// A complete binary tree of bounds over a scene's lights.
+impl Node {
+    /// Of lights that are worth the same everywhere.
+    fn without_sphere(everywhere: f64) -> Self {
+        Self { radius: 1.0, everywhere, ..Self::default() }
+    }
+}
+
+/// A complete binary tree over a scene's lights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightTree {
     /// Of every node; the one before the root is empty.
@@ -73,7 +80,7 @@ pub fn most_iterations(lights: usize) -> u64 {
 impl LightTree {
     /// The tree of a scene's lights; without any it has no node.
     #[must_use]
-    pub fn over(scene: &Scene, viewpoint: &Viewpoint) -> Self {
+    pub fn of(scene: &Scene, viewpoint: &Viewpoint) -> Self {
         let leaf = |place| Leaf::of(scene, viewpoint, place);
         let mut leaves: Vec<Leaf> = places(scene).map(leaf).collect();
         arrange(&mut leaves);
@@ -127,25 +134,23 @@ struct Leaf {
 impl Leaf {
     fn of(scene: &Scene, viewpoint: &Viewpoint, place: usize) -> Self {
         let sphere = &scene.spheres()[place];
-        let Surface::Emitter(radiance) = sphere.surface() else {
-            return Self { place, node: Node::default(), at: viewpoint.focus() };
-        };
-        let brightest = radiance.rgb().max_element();
-        let (center, radius) = (sphere.center(), sphere.radius());
-        if viewpoint.inside()[place] {
-            let node = Node { everywhere: brightest, ..Node::default() };
+        let (center, radius, brightness) = (sphere.center(), sphere.radius(), brightest(sphere));
+        let inside = viewpoint.inside()[place];
+        if inside || radius > viewpoint.extent() {
+            let height = if inside { 1.0 } else { largest_height(sphere, viewpoint) };
+            let node = Node::without_sphere(brightness * height);
             return Self { place, node, at: viewpoint.focus() };
         }
-        if radius > viewpoint.extent() {
-            let everywhere = brightest * largest_height(sphere, viewpoint);
-            return Self {
-                place,
-                node: Node { everywhere, ..Node::default() },
-                at: viewpoint.focus(),
-            };
-        }
-        let node = Node { center, radius, brightness: brightest, everywhere: 0.0 };
+        let node = Node { center, radius, brightness, everywhere: 0.0 };
         Self { place, node, at: center }
+    }
+}
+
+/// The brightest channel of what a sphere emits.
+fn brightest(sphere: &Sphere) -> f64 {
+    match sphere.surface() {
+        Surface::Emitter(radiance) => radiance.rgb().max_element(),
+        Surface::Diffuse(_) | Surface::Glossy(..) => 0.0,
     }
 }
 
@@ -209,7 +214,7 @@ fn join(children: [Node; 2], low: DVec3, high: DVec3) -> Node {
     let everywhere = children[0].everywhere + children[1].everywhere;
     let shining = || children.iter().filter(|child| child.brightness > 0.0);
     if shining().count() == 0 {
-        return Node { everywhere, ..Node::default() };
+        return Node::without_sphere(everywhere);
     }
     let center = low.midpoint(high);
     let reach = shining().map(|child| child.center.distance(center) + child.radius);

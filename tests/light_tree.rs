@@ -26,7 +26,7 @@ fn lamps(count: u32) -> Scene {
 }
 
 fn tree_of(scene: &Scene) -> LightTree {
-    LightTree::over(scene, &Viewpoint::of(scene))
+    LightTree::of(scene, &Viewpoint::of(scene))
 }
 
 /// The leaves under a node.

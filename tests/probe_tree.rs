@@ -24,6 +24,7 @@ use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use support::light_scenes::lamp_layer;
+use support::scenes::{emitter, sphere};
 use support::tracers::film;
 
 const U: f64 = 1.0 / (1 << 24) as f64;
@@ -42,6 +43,15 @@ fn packed(scene: &Scene) -> Packed {
     let viewpoint = Viewpoint::of(scene);
     let effects = Effects::of(scene, &viewpoint).with(Effect::LightTree);
     pack(scene, &viewpoint, effects.without(Effect::Hierarchy), sample_scale(scene))
+}
+
+/// Sixty lamps in a light that holds the camera, beside one that is larger than the scene.
+fn in_sky() -> Scene {
+    let layer = lamp_layer(60, 4.0);
+    let mut spheres = layer.spheres().to_vec();
+    spheres.push(sphere([0.0, 0.0, 0.0], 30.0, emitter([0.5, 1.0, 2.0])));
+    spheres.push(sphere([0.0, 500.0, 0.0], 400.0, emitter([3.0, 2.0, 1.0])));
+    Scene::new(layer.camera().clone(), layer.size(), layer.settings(), spheres)
 }
 
 /// A probe that walks down the tree, however few lights there are.
@@ -185,11 +195,15 @@ fn judge_chances(packed: &Packed, wgsl: &str, points: &[Point]) -> (Vec<String>,
 
 #[test]
 fn chances_are_those_of_the_tree_and_none_is_small() {
-    for (count, points_of_it) in [(2, 200), (3, 200), (5, 200), (17, 200), (64, 100), (300, 40)] {
-        let packed = packed(&lamp_layer(count, 4.0));
-        let points = points(&packed, points_of_it);
+    let layers = [(2, 200), (3, 200), (5, 200), (17, 200), (64, 100), (300, 40)];
+    let layers = layers.map(|(count, points)| (lamp_layer(count, 4.0), points));
+    for (scene, count_of_points) in layers.into_iter().chain([(in_sky(), 100)]) {
+        let packed = packed(&scene);
+        let count = packed.lights.len();
+        let points = points(&packed, count_of_points);
         let (wrong, worst) = judge_chances(&packed, &walking_probe(), &points);
-        println!("{count} lights: chances at {worst:.2} of their bound");
+        let around = packed.light_tree[1].everywhere;
+        println!("{count} lights, {around} around: chances at {worst:.2} of their bound");
         assert!(wrong.is_empty(), "{count} lights, {} are wrong: {}", wrong.len(), wrong[0]);
     }
 }

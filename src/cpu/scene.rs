@@ -58,7 +58,7 @@ impl PreparedScene {
             lights: places(scene).collect(),
             light_tree: Effects::of(scene, &viewpoint)
                 .has(Effect::LightTree)
-                .then(|| LightTree::over(scene, &viewpoint)),
+                .then(|| LightTree::of(scene, &viewpoint)),
             seed: scene.settings().seed(),
             spheres: sides
                 .map(|(sphere, &inside)| PreparedSphere {

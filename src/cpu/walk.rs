@@ -147,7 +147,7 @@ mod tests {
 
     fn tree_of(spheres: Vec<Sphere>) -> LightTree {
         let scene = scene(spheres);
-        LightTree::over(&scene, &Viewpoint::of(&scene))
+        LightTree::of(&scene, &Viewpoint::of(&scene))
     }
 
     /// Points under the layer, over it and in it, with normals of any direction.

@@ -100,7 +100,7 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     let lights = lights(&packed);
     header.light_count = word(lights.len());
     let light_tree = if effects.has(Effect::LightTree) {
-        pack_light_tree(&LightTree::over(scene, viewpoint), &mut packed, &units)
+        pack_light_tree(&LightTree::of(scene, viewpoint), &mut packed, &units)
     } else {
         Vec::new()
     };
