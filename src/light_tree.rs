@@ -1,13 +1,13 @@
 //! A tree over many lights, so that picking one takes a walk and not a scan.
 //!
 //! The idea is that of Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree
-//! Splitting" (Proc. ACM CGIT 1(2), 2018, without the splitting): a node bounds what its lights
-//! can contribute, and a walk goes left or right in proportion to the two bounds. Here the tree
-//! is complete, so that it needs no pointers and no stack: node 1 is the root, the children of
-//! node m are 2m and 2m + 1, and light k of n is node n + k. The binary digits of a node's
-//! number, after the first, are the turns from the root to it.
+//! Splitting" (Proc. ACM CGIT 1(2), 2018), without the splitting: a walk goes left or right in
+//! proportion to what the lights there may contribute. Here the tree is complete, so that it
+//! needs no pointers and no stack: node 1 is the root, the children of node m are 2m and
+//! 2m + 1, and light k of n is node n + k. The binary digits of a node's number, after the
+//! first, are the turns from the root to it.
 //!
-//! Tracers compute the bounds; which half of the lights goes where is decided here.
+//! Which lights a node holds is decided here; each tracer weighs them by itself.
 
 use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::Viewpoint;
