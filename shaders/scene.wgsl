@@ -17,7 +17,8 @@ struct Sphere {
     size: f32,
     // Albedo, or radiance of an emitter.
     color: vec3<f32>,
-    // Phong exponent of a glossy surface.
+    // Phong exponent of a glossy surface; of an emitter in the light tree, the number of its
+    // leaf.
     exponent: f32,
     // Anchored form: value of the sphere's function at the focus.
     offset: f32,

@@ -1,6 +1,7 @@
 //! A proven bound on one sample, from which the film takes its scale.
 
 use crate::film::SampleScale;
+use crate::light_tree::SCANNED_LIGHTS;
 use crate::scene::{Estimator, Invalid, Scene, Surface};
 
 /// Room for the rounding of the kernel's `f32` products: 16 roundings per scattering
@@ -24,8 +25,9 @@ const COARSEST: f64 = 1e-6;
 /// - `cosine`: L, as no weight exceeds 1.
 /// - `explicit`: max(L, S + ρL) with S = Σ_{k=1..K} ρ^{k−1}·C the connections and then a light
 ///   seen from a glossy surface. A connection is 2βh·cosθ·L/chance with h ≤ 1, so
-///   C = 2βL for one light. Of several, each has at least half the chance that is
-///   proportional to h·cosθ·L, so C = 4β·ΣL.
+///   C = 2βL for one light. Of several that are scanned, each has at least half the chance
+///   that is proportional to h·cosθ·L, so C = 4β·ΣL. Of n under a tree, each is only known to
+///   have half of an even chance, so C = 4βnL.
 /// - `mis`: max(L, Σ_{k=1..K} ½ρ^k·L + ρL): the power heuristic keeps a connection below ½ρL
 ///   at its vertex, and a light that is hit below ρL.
 ///
@@ -95,7 +97,9 @@ impl Bounds {
         match (estimator, self.lights) {
             (Estimator::Mis, _) => 0.5 * self.albedo * self.brightest,
             (_, (_, 1)) => 2.0 * self.diffuse * self.brightest,
-            (_, (sum, _)) => 4.0 * self.diffuse * sum,
+            (_, (sum, 0..=SCANNED_LIGHTS)) => 4.0 * self.diffuse * sum,
+            #[expect(clippy::cast_precision_loss, reason = "a count of spheres")]
+            (_, (_, count)) => 4.0 * self.diffuse * count as f64 * self.brightest,
         }
     }
 }

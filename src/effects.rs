@@ -1,5 +1,6 @@
 //! What a scene calls for, decided once; the kernel is composed of nothing else.
 
+use crate::light_tree::SCANNED_LIGHTS;
 use crate::scene::{Estimator, Scene, Sphere, Surface};
 use crate::viewpoint::{Form, Viewpoint};
 
@@ -24,8 +25,10 @@ pub enum Effect {
     Hierarchy,
     /// Lights are sampled where paths scatter.
     Connections,
-    /// There are several lights to sample, and one has to be picked.
-    Pick,
+    /// One of several lights is picked by a scan of all of them.
+    LightScan,
+    /// One of many lights is picked by a walk down a tree of them.
+    LightTree,
     /// A light that is sampled is seen as a cone by centre and radius.
     FactoredLight,
     /// A light that is sampled is huge, and seen as a cone by its surface.
@@ -33,7 +36,7 @@ pub enum Effect {
 }
 
 /// One line for each effect: the spheres that call for it.
-const RULES: [(Effect, fn(Seen, &Facts) -> bool); 10] = [
+const RULES: [(Effect, fn(Seen, &Facts) -> bool); 11] = [
     (Effect::Diffuse, |seen, facts| facts.scatters && seen.is_diffuse()),
     (Effect::Glossy, |seen, facts| facts.scatters && seen.is_glossy()),
     (Effect::Factored, |seen, _| seen.form == Form::Factored),
@@ -41,7 +44,12 @@ const RULES: [(Effect, fn(Seen, &Facts) -> bool); 10] = [
     (Effect::Interior, |seen, _| seen.inside),
     (Effect::Hierarchy, |seen, facts| facts.small > HIERARCHY_FROM && seen.is_small()),
     (Effect::Connections, |seen, facts| facts.connects && seen.emits()),
-    (Effect::Pick, |seen, facts| facts.connects && facts.lights > 1 && seen.emits()),
+    (Effect::LightScan, |seen, facts| {
+        facts.connects && (2..=SCANNED_LIGHTS).contains(&facts.lights) && seen.emits()
+    }),
+    (Effect::LightTree, |seen, facts| {
+        facts.connects && facts.lights > SCANNED_LIGHTS && seen.emits()
+    }),
     (Effect::FactoredLight, |seen, facts| {
         facts.connects && seen.emits() && seen.form == Form::Factored
     }),
@@ -100,7 +108,8 @@ struct Facts {
 impl Facts {
     fn of(scene: &Scene, viewpoint: &Viewpoint) -> Self {
         let all = all_seen(scene, viewpoint);
-        let (diffuse, glossy) = (all.clone().any(Seen::is_diffuse), all.clone().any(Seen::is_glossy));
+        let (diffuse, glossy) =
+            (all.clone().any(Seen::is_diffuse), all.clone().any(Seen::is_glossy));
         let scatters = scene.settings().bounces() > 0;
         let from_here = match scene.settings().estimator() {
             Estimator::Implicit | Estimator::Cosine => false,

@@ -2,9 +2,9 @@
 //!
 //! Data flows one way, and no module knows what stands to its right:
 //!
-//! [`scene`] → [`viewpoint`] → [`hierarchy`], [`effects`], [`bound`], [`range`] → [`film`] →
-//! [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) → [`estimate`] →
-//! [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`report`] → [`cli`]
+//! [`scene`] → [`viewpoint`] → [`hierarchy`], [`light_tree`] → [`effects`], [`bound`], [`range`] →
+//! [`film`] → [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) →
+//! [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`report`] → [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and
@@ -20,6 +20,7 @@ pub mod film;
 pub mod gpu;
 pub mod hierarchy;
 pub mod kernel;
+pub mod light_tree;
 pub mod pilot;
 pub mod range;
 pub mod render;

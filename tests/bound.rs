@@ -12,11 +12,11 @@ mod support {
 use candor::bound::sample_scale;
 use candor::cpu::{PreparedScene, SampleKey, trace};
 use candor::gpu::GpuTracer;
-use candor::kernel::layout;
+use candor::kernel::{Packed, layout};
 use candor::scene::Estimator::{self, Cosine, Explicit, Implicit, Mis};
 use candor::scene::{Scene, Sphere, Surface};
 use candor::tracer::Tracer;
-use support::light_scenes::{forty_lights, hollow, in_light};
+use support::light_scenes::{forty_lights, hollow, in_light, lamp_layer};
 use support::scenes::{diffuse, emitter, glossy, packed, seen, size, sphere};
 use support::tracers::kernel;
 
@@ -33,7 +33,8 @@ fn row_of(surfaces: &[Surface]) -> Scene {
     seen([0.0, 0.0, 9.0], [0.0; 3], size(8, 8), 2, spheres)
 }
 
-/// Lights of 10 and 2, chalk of 0.75, gloss of 0.9; roundings take less than 2⁻¹⁵.
+/// Lights of 10 and 2, chalk of 0.75, gloss of 0.9; 200 lights of 1.5 over chalk of 0.8 and
+/// gloss of 0.9. Roundings take less than 2⁻¹⁵.
 #[test]
 fn bounds_by_hand() {
     let (lamp, dim, chalk, gloss) =
@@ -41,6 +42,7 @@ fn bounds_by_hand() {
     let one = row_of(&[lamp, chalk]);
     let both = row_of(&[lamp, dim, chalk, gloss]);
     let mirrors = row_of(&[lamp, gloss]);
+    let lamps = lamp_layer(200, 0.0);
     let expected = [
         (&one, Cosine, 2, 10.0),
         // 2·0.75·10 at each of two vertices, 0.75 before the second; then 0.75·10.
@@ -55,6 +57,9 @@ fn bounds_by_hand() {
         // No chalk, no connection.
         (&mirrors, Explicit, 5, 10.0),
         (&mirrors, Mis, 2, 4.5 + 4.05 + 9.0),
+        // Half of an even chance: 4·0.8·200·1.5.
+        (&lamps, Explicit, 2, 960.0 + 0.9 * 960.0 + 1.35),
+        (&lamps, Mis, 1, 0.675 + 1.35),
     ];
     for (scene, estimator, bounces, bound) in expected {
         let found = f64::from(sample_scale(&under(scene, estimator, bounces)).bound());
@@ -95,10 +100,11 @@ fn largest(scene: &Scene) -> f64 {
 
 /// How many of the device's samples exceed `bound`.
 fn above(scene: &Scene, bound: f32) -> u64 {
-    let scene_below = layout::Scene { bound_bits: bound.to_bits(), ..*packed(scene).scene };
-    let mut tracer =
-        GpuTracer::with_kernel(scene, support::gpu::open(), &scene_below, &kernel(scene))
-            .expect("the device takes the scene");
+    let packed = packed(scene);
+    let header = layout::Scene { bound_bits: bound.to_bits(), ..packed.scene };
+    let below = Packed { scene: header, ..packed };
+    let mut tracer = GpuTracer::with_kernel(scene, support::gpu::open(), &below, &kernel(scene))
+        .expect("the device takes the scene");
     tracer.add_samples(0..SAMPLES).expect("the device traces");
     tracer.ledger().expect("a ledger").count
 }
@@ -128,6 +134,8 @@ fn samples_come_near_their_bound_and_stay_below() {
         ("in a light", in_light(), Mis, 3, 0.1),
         ("forty lamps", forty_lights(), Explicit, 2, 0.01),
         ("forty lamps", forty_lights(), Mis, 2, 0.1),
+        ("200 lamps", lamp_layer(200, 1.0), Explicit, 2, 0.001),
+        ("200 lamps", lamp_layer(200, 1.0), Mis, 2, 0.1),
     ];
     for (name, scene, estimator, bounces, share) in cases {
         let scene = under(&scene.with_size(size(8, 8)), estimator, bounces);

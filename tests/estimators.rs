@@ -18,7 +18,7 @@ use candor::scene::Scene;
 use candor::tracer::Tracer;
 use support::light_scenes::{
     at_the_floor, classic_of, coincident_crowd, coincident_lights, forty_lights, gloss,
-    hidden_light, hollow, in_light, joined_lights, under_sun,
+    hidden_light, hollow, in_light, joined_lights, lamp_layer, under_sun,
 };
 use support::tracers::{film, mutant, on_device, trace, twin};
 
@@ -155,6 +155,7 @@ fn the_device_has_one_mean() {
         Case::new("hidden lamp", hidden_light(), 6144, 1024),
         Case::new("coincident lamps", coincident_lights(), 8192, 2048),
         Case::new("coincident in a crowd", coincident_crowd(), 8192, 2048),
+        Case::new("a thousand lamps", lamp_layer(1000, 1.0), 3584, 1792),
     ];
     check(&cases, 0.02, &|scene| Box::new(on_device(scene)));
 }
@@ -166,6 +167,7 @@ fn the_twin_has_one_mean() {
         Case::new("in a light", in_light(), 512, 512),
         Case::new("under a sun of 1e6", under_sun(1e6), 512, 512),
         Case::new("joined lamps", joined_lights(), 1024, 512),
+        Case::new("200 lamps", lamp_layer(200, 1.0), 1792, 896),
     ];
     check(&cases, 0.03, &|scene| Box::new(twin(scene)));
 }
@@ -246,6 +248,25 @@ const FAULTS: &[Faulty] = &[
         "coincident",
         coincident_lights,
         &[("both of a place seen", Explicit, " || earlier <= distance", "")],
+    ),
+    (
+        "200 lamps",
+        || lamp_layer(200, 1.0),
+        &[
+            ("no even half", Explicit, "0.5 * walked + 0.5 / f32(scene.light_count)", "walked"),
+            (
+                "chance of the other side",
+                Explicit,
+                "select(1.0 - chance, chance, goes_left)",
+                "select(chance, 1.0 - chance, goes_left)",
+            ),
+            (
+                "chance of another leaf",
+                Mis,
+                "u32(spheres[light].exponent)",
+                "u32(spheres[light].exponent) ^ 7u",
+            ),
+        ],
     ),
     ("crowd", coincident_crowd, &[("both of a place seen", Mis, " || earlier <= distance", "")]),
 ];

@@ -15,18 +15,23 @@ pub(super) struct Cone {
     pub(super) height: f64,
 }
 
+/// The cone that holds a sphere, or the half-space towards its centre from within.
+/// 1 − cosσ = sin²σ/(1 + cosσ) does not cancel.
+pub(super) fn cone_from(to_centre: DVec3, radius: f64) -> Cone {
+    let d = to_centre.length();
+    let sine = radius / d;
+    let cosine2 = (d - radius) * (d + radius) / (d * d);
+    let height = (sine * sine).min(1.0) / (1.0 + cosine2.max(0.0).sqrt());
+    Cone { axis: to_centre / d, height }
+}
+
 /// From inside a light, where every direction meets it, the half-space above the surface;
-/// from outside, the cone that holds it. 1 − cosσ = sin²σ/(1 + cosσ) does not cancel.
+/// from outside, the cone that holds it.
 pub(super) fn cone_of(light: &PreparedSphere, point: &SurfacePoint) -> Cone {
     if light.inside {
         return Cone { axis: point.normal, height: 1.0 };
     }
-    let to_centre = light.center - point.position;
-    let d = to_centre.length();
-    let sine = light.radius / d;
-    let cosine2 = (d - light.radius) * (d + light.radius) / (d * d);
-    let height = (sine * sine).min(1.0) / (1.0 + cosine2.max(0.0).sqrt());
-    Cone { axis: to_centre / d, height }
+    cone_from(light.center - point.position, light.radius)
 }
 
 /// Distance to a light along a direction drawn in its cone: the ray is known to meet it,

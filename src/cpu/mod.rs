@@ -16,6 +16,7 @@ pub mod sampling;
 mod scene;
 pub mod sphere;
 mod trace;
+mod walk;
 
 pub use replay::replay;
 pub use rng::SampleKey;

@@ -2,6 +2,8 @@
 //! for laid out for it. It shares no packing with the kernel, so that a mistake in
 //! `src/kernel` cannot hide in both.
 
+use crate::effects::{Effect, Effects};
+use crate::light_tree::{LightTree, places};
 use crate::scene::{Estimator, Scene, Surface};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
@@ -17,6 +19,8 @@ pub struct PreparedScene {
     pub(super) spheres: Vec<PreparedSphere>,
     /// Places of the emitters among them.
     pub(super) lights: Vec<usize>,
+    /// A tree over them, where there are too many to scan.
+    pub(super) light_tree: Option<LightTree>,
 }
 
 /// The camera: `right` and `up` reach from the picture's centre to its edges on the
@@ -51,9 +55,10 @@ impl PreparedScene {
             camera: Pinhole::of(scene),
             bounces: scene.settings().bounces(),
             estimator: scene.settings().estimator(),
-            lights: (0..scene.spheres().len())
-                .filter(|&i| matches!(scene.spheres()[i].surface(), Surface::Emitter(_)))
-                .collect(),
+            lights: places(scene).collect(),
+            light_tree: Effects::of(scene, &viewpoint)
+                .has(Effect::LightTree)
+                .then(|| LightTree::of(scene, &viewpoint)),
             seed: scene.settings().seed(),
             spheres: sides
                 .map(|(sphere, &inside)| PreparedSphere {

@@ -24,8 +24,7 @@ impl Binding {
     }
 }
 
-const READ: wgpu::BufferBindingType =
-    wgpu::BufferBindingType::Storage { read_only: true };
+const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
 pub(super) const WRITTEN: wgpu::BufferBindingType =
     wgpu::BufferBindingType::Storage { read_only: false };
 
@@ -37,7 +36,7 @@ impl SceneBuffers {
     /// Takes a scene to the device.
     ///
     /// # Errors
-    /// If it has more spheres than the device binds, or has no memory for them.
+    /// If it has more spheres or lights than the device binds, or has no memory for them.
     pub(super) fn new(gpu: &Gpu, packed: &Packed) -> Result<Self, TraceError> {
         check_size(gpu, packed)?;
         let header = uniform(gpu, "scene", std::slice::from_ref(&packed.scene));
@@ -55,6 +54,9 @@ impl SceneBuffers {
         if !packed.nodes.is_empty() {
             bindings.push(Binding::new(8, READ, &stored(gpu, "hierarchy", &packed.nodes)));
         }
+        if !packed.light_tree.is_empty() {
+            bindings.push(Binding::new(9, READ, &stored(gpu, "light tree", &packed.light_tree)));
+        }
         gpu.check()?;
         Ok(Self(bindings))
     }
@@ -69,17 +71,25 @@ impl SceneBuffers {
     }
 }
 
-/// Refuses more spheres than fit into one binding.
+/// The light tree's nodes have numbers that an `f32` holds.
+const MOST_LIGHT_NODES: u64 = 1 << 24;
+
+/// Refuses more spheres, or more lights, than fit into one binding.
 fn check_size(gpu: &Gpu, packed: &Packed) -> Result<(), TraceError> {
     let limits = gpu.device().limits();
     let binding = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    let most = binding / size_of::<layout::Sphere>() as u64;
-    if packed.spheres.len() as u64 <= most {
+    let spheres = binding / size_of::<layout::Sphere>() as u64;
+    let nodes = (binding / size_of::<layout::LightNode>() as u64).min(MOST_LIGHT_NODES);
+    check(gpu, "spheres", packed.spheres.len(), spheres)?;
+    check(gpu, "lights", packed.light_tree.len() / 2, nodes / 2)
+}
+
+fn check(gpu: &Gpu, what: &str, count: usize, most: u64) -> Result<(), TraceError> {
+    if count as u64 <= most {
         return Ok(());
     }
     Err(TraceError::Device(format!(
-        "the scene has {} spheres; {} takes at most {most} (--device cpu takes any number)",
-        packed.spheres.len(),
+        "the scene has {count} {what}; {} takes at most {most} (--device cpu takes any number)",
         gpu.description().device
     )))
 }

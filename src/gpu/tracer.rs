@@ -9,6 +9,7 @@ use crate::bound::sample_scale;
 use crate::effects::Effects;
 use crate::film::{Film, FilmError, SampleRanges, SampleScale};
 use crate::kernel::{self, Kernel, Packed, Tile, layout};
+use crate::light_tree::most_iterations;
 use crate::scene::{ImageSize, Scene};
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
 use crate::viewpoint::Viewpoint;
@@ -261,8 +262,8 @@ pub(super) fn check_iterations(scene: &Scene, packed: &Packed) -> Result<(), Tra
     if !scene.settings().estimator().samples_lights() {
         return Ok(());
     }
-    let (spheres, lights) = (scene.spheres().len() as u64, packed.lights.len() as u64);
-    let vertex = 1 + 2 * (spheres + 1) + 3 * (lights + 1);
+    let (spheres, lights) = (scene.spheres().len() as u64, packed.lights.len());
+    let vertex = 1 + 2 * (spheres + 1) + most_iterations(lights);
     let most = MAX_ITERATIONS / vertex - 1;
     let bounces = scene.settings().bounces();
     if u64::from(bounces) < most {

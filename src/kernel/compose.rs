@@ -5,6 +5,7 @@ use super::search;
 use super::text::{Text, fragment};
 use super::tile::Tile;
 use crate::effects::{Effect, Effects};
+use crate::light_tree::SCANNED_LIGHTS;
 use crate::scene::{Estimator, ImageSize, Scene};
 use crate::viewpoint::Form;
 
@@ -100,7 +101,7 @@ impl Kernel {
         );
         let mut text = self.path();
         text.push(follow(&self.steps(), self.loads()));
-        text.add(fragment!("film")).add(fragment!("ledger"));
+        text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("ledger"));
         text.push(tile);
         text.add(fragment!("render"));
         text.into_wgsl()
@@ -114,6 +115,9 @@ impl Kernel {
         let mut text = self.path();
         if !self.scatters() {
             self.surface(&mut text);
+        }
+        if self.effects.has(Effect::LightTree) {
+            text.add(fragment!("multiply"));
         }
         text.push(follow(&looped("observe"), self.loads()));
         text.add(if self.effects.has(Effect::Connections) {
@@ -220,7 +224,8 @@ impl Kernel {
 
     /// How a path goes on from there.
     fn scattering(&self, text: &mut Text) {
-        let (diffuse, glossy) = (self.effects.has(Effect::Diffuse), self.effects.has(Effect::Glossy));
+        let (diffuse, glossy) =
+            (self.effects.has(Effect::Diffuse), self.effects.has(Effect::Glossy));
         text.add(fragment!("azimuth")).add(fragment!("sampling")).add(fragment!("material"));
         if diffuse && self.estimator == Estimator::Implicit {
             text.add(fragment!("hemisphere_uniform")).add(fragment!("diffuse_uniform"));
@@ -242,8 +247,10 @@ impl Kernel {
         self.worth(text);
         text.add(fragment!("light"));
         let huge = self.effects.has(Effect::AnchoredLight);
-        if self.effects.has(Effect::FactoredLight) {
+        if self.effects.has(Effect::FactoredLight) || self.effects.has(Effect::LightTree) {
             text.add(fragment!("cone_factored"));
+        }
+        if self.effects.has(Effect::FactoredLight) {
             text.add(if huge { fragment!("light_both") } else { fragment!("light_factored") });
         } else {
             text.add(fragment!("light_anchored"));
@@ -285,25 +292,42 @@ impl Kernel {
 
     /// Which light is sampled.
     fn pick(&self, text: &mut Text) {
-        match self.only_light() {
-            Some(place) => {
-                text.push(format!("const LIGHT: u32 = {place}u;\n"));
-                text.add(fragment!("pick_one"));
-            }
-            None => {
-                text.add(if self.stored {
-                    fragment!("lights_storage")
-                } else {
-                    fragment!("lights_uniform")
-                });
-                text.add(fragment!("pick_many"));
-            }
+        if let Some(place) = self.only_light() {
+            text.push(format!("const LIGHT: u32 = {place}u;\n"));
+            text.add(fragment!("pick_one"));
+            return;
         }
+        text.add(fragment!("pick"));
+        let (scan, tree) = self.picks();
+        if scan {
+            text.add(if self.stored {
+                fragment!("lights_storage")
+            } else {
+                fragment!("lights_uniform")
+            });
+            text.add(fragment!("pick_scan"));
+        }
+        if tree {
+            text.add(fragment!("pick_tree"));
+        }
+        if scan && tree {
+            text.push(format!("const SCANNED_LIGHTS: u32 = {SCANNED_LIGHTS}u;\n"));
+        }
+        text.add(match (scan, tree) {
+            (true, true) => fragment!("pick_by_either"),
+            (false, true) => fragment!("pick_by_walk"),
+            (_, false) => fragment!("pick_by_scan"),
+        });
+    }
+
+    /// Whether a light is picked by a scan, and whether by a walk.
+    fn picks(&self) -> (bool, bool) {
+        (self.effects.has(Effect::LightScan), self.effects.has(Effect::LightTree))
     }
 
     /// The place of the only light there is to sample.
     fn only_light(&self) -> Option<u32> {
-        (!self.effects.has(Effect::Pick)).then_some(self.light)
+        (self.picks() == (false, false)).then_some(self.light)
     }
 }
 
@@ -325,6 +349,6 @@ pub fn probe_source() -> String {
         stack: 0,
     }
     .path();
-    text.add(fragment!("film")).add(fragment!("probe"));
+    text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("probe"));
     text.into_wgsl()
 }

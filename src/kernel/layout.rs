@@ -29,7 +29,8 @@ pub struct Sphere {
     pub size: f32,
     /// Albedo, or radiance of an emitter.
     pub color: [f32; 3],
-    /// Phong exponent of a glossy surface.
+    /// Phong exponent of a glossy surface; of an emitter in the light tree, the number of its
+    /// leaf, which is exact up to 2²⁴.
     pub exponent: f32,
     /// Anchored form: value of the sphere's function at the focus.
     pub offset: f32,
@@ -94,6 +95,24 @@ pub struct Node {
     pub high: [u32; 3],
     /// Place of the first sphere of the first child that is none; the others follow.
     pub first_sphere: u32,
+}
+
+/// A node of the light tree.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct LightNode {
+    /// Centre of a sphere around the lights, in kernel units.
+    pub center: [f32; 3],
+    /// Its radius.
+    pub radius: f32,
+    /// Radiance that makes the sphere as bright, from far away, as its lights together.
+    pub brightness: f32,
+    /// What lights contribute that look much the same from everywhere in the scene.
+    pub everywhere: f32,
+    /// Of a leaf: place of the light.
+    pub light: u32,
+    /// Implicit in WGSL.
+    pub padding: u32,
 }
 
 /// The work of one dispatch.

@@ -5,6 +5,7 @@ use super::wide::Wide;
 use crate::effects::{Effect, Effects};
 use crate::film::SampleScale;
 use crate::hierarchy::{Bounds, Hierarchy};
+use crate::light_tree::{LightTree, Node};
 use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::{Form, Viewpoint};
 use glam::DVec3;
@@ -51,6 +52,8 @@ pub struct Packed {
     pub nodes: Vec<layout::Node>,
     /// Most items that wait while a ray goes through the hierarchy.
     pub stack: u32,
+    /// The tree over the lights; empty where there is none.
+    pub light_tree: Vec<layout::LightNode>,
     /// Form of every sphere, in the order of the scene file.
     pub forms: Vec<Form>,
 }
@@ -73,8 +76,8 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     let packed_sphere =
         |&index: &usize| pack_sphere(&spheres[index], index, forms[index], inside[index], &units);
     let is_small = |&index: &usize| forms[index] == Form::Factored && !inside[index];
-    let (small, large): (Vec<usize>, Vec<usize>) = (0..spheres.len())
-        .partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
+    let (small, large): (Vec<usize>, Vec<usize>) =
+        (0..spheres.len()).partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
     let small: Vec<layout::Sphere> = small.iter().map(packed_sphere).collect();
     let boxes: Vec<Bounds> = small.iter().map(bounds).collect();
     let wide = Wide::of(&Hierarchy::build(&boxes));
@@ -96,12 +99,18 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     header.bound_bits = scale.bound().to_bits();
     let lights = lights(&packed);
     header.light_count = word(lights.len());
+    let light_tree = if effects.has(Effect::LightTree) {
+        pack_light_tree(&LightTree::of(scene, viewpoint), &mut packed, &units)
+    } else {
+        Vec::new()
+    };
     Packed {
         scene: header,
         spheres: packed,
         lights,
         nodes: wide.nodes,
         stack: wide.stack,
+        light_tree,
         forms: forms.to_vec(),
     }
 }
@@ -124,6 +133,38 @@ fn reach(bounds: &Bounds) -> f32 {
 fn lights(spheres: &[layout::Sphere]) -> Vec<u32> {
     let emits = |&(_, sphere): &(u32, &layout::Sphere)| sphere.kind == layout::KIND_EMITTER;
     (0..).zip(spheres).filter(emits).map(|(place, _)| place).collect()
+}
+
+/// The tree in kernel units. Leaves learn the places of their lights, and lights the numbers
+/// of their leaves.
+fn pack_light_tree(
+    tree: &LightTree,
+    spheres: &mut [layout::Sphere],
+    units: &KernelUnits,
+) -> Vec<layout::LightNode> {
+    let mut nodes: Vec<layout::LightNode> =
+        tree.nodes().iter().map(|node| pack_light_node(node, units)).collect();
+    for (place, sphere) in (0..).zip(spheres) {
+        let leaf = tree.leaves()[sphere.index as usize];
+        if leaf > 0 {
+            nodes[leaf].light = place;
+            #[expect(clippy::cast_precision_loss, reason = "exact where the device takes as many")]
+            let number = leaf as f32;
+            sphere.exponent = number;
+        }
+    }
+    nodes
+}
+
+fn pack_light_node(node: &Node, units: &KernelUnits) -> layout::LightNode {
+    layout::LightNode {
+        center: floats(units.point(node.center)),
+        radius: float(units.length(node.radius)),
+        brightness: float(node.brightness),
+        everywhere: float(node.everywhere),
+        light: 0,
+        padding: 0,
+    }
 }
 
 fn pack_camera(

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test uses some of them")]
 
 use super::scenes::{diffuse, emitter, glossy, seen, size, sphere};
+use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::scene::{Albedo, RenderSettings, Scene, Sphere, Surface, parse};
 use glam::DVec3;
 
@@ -160,4 +161,23 @@ pub fn coincident_crowd() -> Scene {
     });
     let spheres = scene.spheres().iter().cloned().chain(balls).collect();
     picture([0.0, 3.0, 7.0], [0.0, 1.0, 0.0], 2, spheres)
+}
+
+/// Under a layer of lamps that fill half of it; their powers span some decades.
+pub fn lamp_layer(count: u32, decades: f64) -> Scene {
+    let lamp = |index| {
+        let key = SampleKey { pixel: 4, index: u64::from(index) };
+        let [x, y, z, power] = random_bits(key, 0, 0).map(unit_float);
+        let place = DVec3::new(6.0 * x - 3.0, 1.6 + 0.3 * y, 6.0 * z - 3.0);
+        let power = 10_f64.powf(decades * power);
+        let tint = DVec3::new(1.0, 0.5 + f64::from(index % 3) / 4.0, 1.5 - f64::from(index % 2));
+        sphere(place, 2.5 / f64::from(count).sqrt().max(6.0), emitter(power * tint))
+    };
+    let mut spheres = vec![
+        floor(),
+        sphere([0.6, 0.7, 0.0], 0.7, glossy(0.9, 10.0)),
+        sphere([-1.0, 0.6, 0.5], 0.6, diffuse(0.8)),
+    ];
+    spheres.extend((0..count).map(lamp));
+    picture([0.0, 1.4, 3.6], [0.0, 0.0, 1.2], 2, spheres)
 }

@@ -84,5 +84,6 @@ pub fn many(size: ImageSize) -> Scene {
 
 pub fn packed(scene: &Scene) -> Packed {
     let scale = candor::bound::sample_scale(scene);
-    pack(scene, &Viewpoint::of(scene), scale).expect("few spheres")
+    let viewpoint = Viewpoint::of(scene);
+    pack(scene, &viewpoint, candor::effects::Effects::of(scene, &viewpoint), scale)
 }

@@ -23,12 +23,13 @@ pub fn twin(scene: &Scene) -> CpuTracer {
 
 /// The text of the kernel that the scene calls for.
 pub fn kernel(scene: &Scene) -> String {
-    Kernel::of(scene, &Viewpoint::of(scene), &packed(scene)).wgsl()
+    let effects = candor::effects::Effects::of(scene, &Viewpoint::of(scene));
+    Kernel::of(scene, effects, &packed(scene)).wgsl()
 }
 
 /// A tracer with another kernel.
 pub fn with_kernel(scene: &Scene, wgsl: &str) -> GpuTracer {
-    GpuTracer::with_kernel(scene, gpu::open(), &packed(scene).scene, wgsl)
+    GpuTracer::with_kernel(scene, gpu::open(), &packed(scene), wgsl)
         .expect("the device takes the kernel")
 }
 

@@ -1,23 +1,12 @@
-// Several lights: one is picked, half of the time in proportion to a bound on what it
+// Several lights: all of them are scanned to pick one, half of the time in proportion to a bound on what it
 // can contribute at this point, half of the time evenly. No light's chance is then
 // below half of an even one, whatever the bound misses.
 
-struct Pick {
-    light: u32,
-    // Probability of picking this light.
-    chance: f32,
-}
-
-// height · brightest channel · largest cosine of a direction in the cone. That cosine is
-// cos(θ - σ) for a centre at the angle θ > σ from the normal.
+// height · brightest channel · largest cosine.
 fn potential(light: u32, point: SurfacePoint) -> f32 {
     let cone = cone_of(light, point);
-    let cos_theta = dot(cone.axis, point.normal);
-    let cos_sigma = 1.0 - cone.height;
-    let sines = sqrt(max(1.0 - cos_theta * cos_theta, 0.0) * cone.height * (2.0 - cone.height));
-    let cosine = select(max(cos_theta * cos_sigma + sines, 0.0), 1.0, cos_theta >= cos_sigma);
     let color = spheres[light].color;
-    return cone.height * cosine * max(max(color.x, color.y), color.z);
+    return cone.height * largest_cosine(cone, point.normal) * max(max(color.x, color.y), color.z);
 }
 
 fn total_potential(point: SurfacePoint) -> f32 {
@@ -35,9 +24,8 @@ fn chance_among(potential: f32, total: f32) -> f32 {
     return select(even, 0.5 * (potential / total + even), total > 0.0);
 }
 
-fn pick_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
+fn scan_for_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     let total = total_potential(point);
-    // A block of its own, beyond those of the scatterings.
     let u = unit_float(random_bits(key, PICK_BLOCKS + bounce).x);
     var pick = Pick(NO_SPHERE, 0.0);
     var sum = 0.0;
@@ -56,8 +44,6 @@ fn pick_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     return pick;
 }
 
-fn chance_of(light: u32, point: SurfacePoint) -> f32 {
+fn chance_in_scan(light: u32, point: SurfacePoint) -> f32 {
     return chance_among(potential(light, point), total_potential(point));
 }
-
-const PICK_BLOCKS: u32 = 128u;

@@ -1,0 +1,15 @@
+// The scene may have any number of lights: up to SCANNED_LIGHTS are scanned.
+
+fn pick_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
+    if scene.light_count > SCANNED_LIGHTS {
+        return walk_for_light(point, key, bounce);
+    }
+    return scan_for_light(point, key, bounce);
+}
+
+fn chance_of(light: u32, point: SurfacePoint) -> f32 {
+    if scene.light_count > SCANNED_LIGHTS {
+        return chance_in_tree(light, point);
+    }
+    return chance_in_scan(light, point);
+}
