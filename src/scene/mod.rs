@@ -7,10 +7,12 @@
 //! unit of W·sr⁻¹·m⁻² per channel (linear, Rec. 709 primaries).
 
 mod camera;
+mod cloud;
 mod error;
 mod file;
 mod hash;
 mod settings;
+mod spelling;
 mod sphere;
 
 pub use camera::{Camera, ImageSize};

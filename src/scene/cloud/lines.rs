@@ -1,0 +1,155 @@
+//! The lines of a text, with their numbers and places, read on all cores.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::{Mistakes, Sphere};
+
+/// Bytes that one core reads at a time.
+const PIECE_BYTES: usize = 1 << 20;
+
+/// A line without its end, `\n` or `\r\n`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Line<'a> {
+    /// Counted from 1.
+    pub(super) number: usize,
+    /// Bytes before it.
+    pub(super) start: usize,
+    pub(super) text: &'a str,
+}
+
+impl Line<'_> {
+    /// Its place in the text, in bytes.
+    pub(super) fn span(&self) -> Range<usize> {
+        self.start..self.start + self.text.len()
+    }
+}
+
+/// The lines of a text from one place on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lines<'a> {
+    rest: &'a str,
+    /// Number of the first line of the rest.
+    number: usize,
+    /// Bytes before the rest.
+    start: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self { rest: text, number: 1, start: 0 }
+    }
+
+    /// Bytes before the next line.
+    pub(super) fn start(&self) -> usize {
+        self.start
+    }
+
+    /// The first `length` bytes, which end with a line, and the rest.
+    fn split_at(self, length: usize) -> (Self, Self) {
+        let (first, rest) = self.rest.split_at(length);
+        let number = self.number + newlines(first);
+        (Self { rest: first, ..self }, Self { rest, number, start: self.start + length })
+    }
+
+    /// The first `count` lines or as many as there are, their number, and the rest.
+    pub(super) fn first(self, count: usize) -> (Self, usize, Self) {
+        let mut behind = self;
+        let found = behind.by_ref().take(count).count();
+        let (first, rest) = self.split_at(behind.start - self.start);
+        (first, found, rest)
+    }
+
+    /// Pieces of some [`PIECE_BYTES`] each.
+    fn pieces(mut self) -> Vec<Self> {
+        let mut pieces = Vec::new();
+        while let Some(end) = self.rest.as_bytes().get(PIECE_BYTES..).and_then(|beyond| {
+            beyond.iter().position(|&byte| byte == b'\n').map(|at| PIECE_BYTES + at + 1)
+        }) {
+            let (piece, rest) = self.split_at(end);
+            pieces.push(piece);
+            self = rest;
+        }
+        pieces.push(self);
+        pieces
+    }
+
+    /// Appends what `read` makes of each line to `spheres`, in order; it may pass over a line.
+    pub(super) fn read(
+        self,
+        spheres: &mut Vec<Sphere>,
+        read: impl Fn(&Line<'a>, &mut Mistakes) -> Option<Sphere> + Sync,
+    ) -> Result<(), Mistakes> {
+        let pieces: Vec<(Vec<Sphere>, Mistakes)> = self
+            .pieces()
+            .into_par_iter()
+            .map(|piece| {
+                let mut mistakes = Mistakes::default();
+                let mut found = Vec::with_capacity(newlines(piece.rest) + 1);
+                found.extend(piece.filter_map(|line| read(&line, &mut mistakes)));
+                (found, mistakes)
+            })
+            .collect();
+        spheres.reserve(pieces.iter().map(|(found, _)| found.len()).sum());
+        let mut all = Mistakes::default();
+        for (found, mistakes) in pieces {
+            spheres.extend(found);
+            all.append(mistakes);
+        }
+        all.none()
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = Line<'a>;
+
+    fn next(&mut self) -> Option<Line<'a>> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let (text, rest) = match self.rest.split_once('\n') {
+            Some((text, rest)) => (text, rest),
+            None => (self.rest, ""),
+        };
+        let line =
+            Line { number: self.number, start: self.start, text: text.trim_end_matches('\r') };
+        self.start += self.rest.len() - rest.len();
+        self.number += 1;
+        self.rest = rest;
+        Some(line)
+    }
+}
+
+/// Number of lines of a text.
+pub(super) fn count(text: &str) -> usize {
+    newlines(text) + usize::from(!text.is_empty() && !text.ends_with('\n'))
+}
+
+fn newlines(text: &str) -> usize {
+    text.as_bytes().iter().filter(|&&byte| byte == b'\n').count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_know_their_place() {
+        let lines: Vec<(usize, usize, &str)> =
+            Lines::new("ab\r\n\n\u{e9}\nc").map(|line| (line.number, line.start, line.text)).collect();
+        assert_eq!(lines, [(1, 0, "ab"), (2, 4, ""), (3, 5, "\u{e9}"), (4, 8, "c")]);
+        assert_eq!(Lines::new("").next(), None);
+        assert_eq!(["", "a", "a\n", "a\n\n", "a\nb"].map(count), [0, 1, 1, 2, 2]);
+    }
+
+    /// Pieces put together again are the lines of the whole.
+    #[test]
+    fn pieces_hold_every_line_once() {
+        let text: String = (0..400_000).map(|n| format!("{n}\n")).collect();
+        let whole = Lines::new(&text);
+        let pieces = whole.pieces();
+        assert!(pieces.len() > 2, "{} pieces", pieces.len());
+        assert!(pieces.into_iter().flatten().eq(whole), "lines differ");
+    }
+}
