@@ -8,12 +8,15 @@
 
 mod camera;
 mod cloud;
+mod coincident;
 mod error;
 mod file;
 mod hash;
 mod settings;
 mod spelling;
 mod sphere;
+
+use coincident::drop_hidden;
 
 pub use camera::{Camera, ImageSize};
 pub use error::{Diagnostic, SceneFileError};
@@ -23,7 +26,6 @@ pub use settings::{Estimator, RenderSettings};
 pub use sphere::{Albedo, Exponent, Radiance, Sphere, Surface};
 
 use glam::DVec3;
-use std::collections::HashSet;
 
 /// Largest magnitude of a coordinate or radius, in scene units.
 pub const MAX_LENGTH: f64 = 1e15;
@@ -103,11 +105,7 @@ impl Scene {
         for (ordinal, sphere) in (1..).zip(&mut spheres) {
             sphere.set_ordinal(ordinal);
         }
-        let mut places = HashSet::new();
-        spheres.retain(|sphere| {
-            let place = (sphere.center() + DVec3::ZERO).extend(sphere.radius());
-            places.insert(place.to_array().map(f64::to_bits))
-        });
+        drop_hidden(&mut spheres);
         Self { camera, size, settings, spheres }
     }
 

@@ -17,8 +17,9 @@ const RED: usize = 4;
 /// Names by which other programs call columns that would be missed without a word.
 const OTHER_NAMES: [(&str, &str); 3] = [("red", "r"), ("green", "g"), ("blue", "b")];
 
-const HEADER: &str = "the first line names the columns: x, y, z, and where they are known radius, \
-                      and r, g, b; lines that start with `#` are comments";
+const HEADER: &str = "the first line names the columns: `x,y,z`, `x,y,z,radius` or \
+                      `x,y,z,radius,r,g,b`, in any order";
+const COMMENTS: &str = "lines that start with `#` are comments";
 
 /// A table whose header was read.
 pub(crate) struct Table<'a> {
@@ -142,7 +143,7 @@ fn is_data(line: &Line<'_>) -> bool {
 fn columns(header: &Line<'_>, names: &[Field<'_>]) -> Result<Vec<Option<usize>>, Mistakes> {
     if names.iter().all(|name| name.number().is_some()) {
         let wrong = Diagnostic::new(header.span(), "the header is missing");
-        return Err(wrong.label("this is a row of numbers").note(HEADER).into());
+        return Err(wrong.label("this is a row of numbers").note(HEADER).note(COMMENTS).into());
     }
     if let ([only], Some(found)) = (names, header.text.chars().find(|c| ";\t ".contains(*c)))
         && only.span() == Field::new(header.start, header.text).span()
@@ -228,7 +229,7 @@ fn colour(rgb: [f64; 3], places: [Field<'_>; 3], mistakes: &mut Mistakes) -> Opt
             mistakes.push(|| {
                 let wrong = place.wrong(COLUMNS[column], "an albedo from 0 to 1");
                 if value > 1.0 && value <= 255.0 {
-                    wrong.note("of bytes of a picture, divide by 255 and make them linear")
+                    wrong.note("divide colours of 0 to 255 by 255; those of pictures, sRGB, are not linear")
                 } else {
                     wrong
                 }

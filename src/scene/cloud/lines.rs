@@ -7,7 +7,10 @@ use rayon::prelude::*;
 use super::{Mistakes, Sphere};
 
 /// Bytes that one core reads at a time.
-const PIECE_BYTES: usize = 1 << 20;
+const PIECE_BYTES: usize = 1 << 18;
+/// Pieces that are read at a time, before their spheres move to where all are: their memory
+/// serves the next ones.
+const WAVE: usize = 64;
 
 /// A line without its end, `\n` or `\r\n`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,16 +65,23 @@ impl<'a> Lines<'a> {
     }
 
     /// Pieces of some [`PIECE_BYTES`] each.
-    fn pieces(mut self) -> Vec<Self> {
+    fn pieces(self) -> Vec<Self> {
         let mut pieces = Vec::new();
-        while let Some(end) = self.rest.as_bytes().get(PIECE_BYTES..).and_then(|beyond| {
-            beyond.iter().position(|&byte| byte == b'\n').map(|at| PIECE_BYTES + at + 1)
-        }) {
-            let (piece, rest) = self.split_at(end);
-            pieces.push(piece);
-            self = rest;
+        let (mut rest, mut start) = (self.rest, self.start);
+        while !rest.is_empty() {
+            let beyond = rest.as_bytes().get(PIECE_BYTES..);
+            let newline = beyond.and_then(|beyond| beyond.iter().position(|&b| b == b'\n'));
+            let length = newline.map_or(rest.len(), |at| PIECE_BYTES + at + 1);
+            pieces.push(Self { rest: &rest[..length], number: 0, start });
+            rest = &rest[length..];
+            start += length;
         }
-        pieces.push(self);
+        let counts: Vec<usize> = pieces.par_iter().map(|piece| newlines(piece.rest)).collect();
+        let mut number = self.number;
+        for (piece, count) in pieces.iter_mut().zip(counts) {
+            piece.number = number;
+            number += count;
+        }
         pieces
     }
 
@@ -81,21 +91,21 @@ impl<'a> Lines<'a> {
         spheres: &mut Vec<Sphere>,
         read: impl Fn(&Line<'a>, &mut Mistakes) -> Option<Sphere> + Sync,
     ) -> Result<(), Mistakes> {
-        let pieces: Vec<(Vec<Sphere>, Mistakes)> = self
-            .pieces()
-            .into_par_iter()
-            .map(|piece| {
-                let mut mistakes = Mistakes::default();
-                let mut found = Vec::with_capacity(newlines(piece.rest) + 1);
-                found.extend(piece.filter_map(|line| read(&line, &mut mistakes)));
-                (found, mistakes)
-            })
-            .collect();
-        spheres.reserve(pieces.iter().map(|(found, _)| found.len()).sum());
+        let read = |piece: &Self| {
+            let mut mistakes = Mistakes::default();
+            let found = piece.filter_map(|line| read(&line, &mut mistakes)).collect();
+            (found, mistakes)
+        };
+        let pieces = self.pieces();
+        let lines = pieces.last().map_or(0, |last| last.number + newlines(last.rest) + 1);
+        spheres.reserve(lines.saturating_sub(self.number));
         let mut all = Mistakes::default();
-        for (found, mistakes) in pieces {
-            spheres.extend(found);
-            all.append(mistakes);
+        for wave in pieces.chunks(WAVE) {
+            let read: Vec<(Vec<Sphere>, Mistakes)> = wave.par_iter().map(read).collect();
+            for (found, mistakes) in read {
+                spheres.extend(found);
+                all.append(mistakes);
+            }
         }
         all.none()
     }

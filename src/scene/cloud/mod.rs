@@ -178,7 +178,7 @@ impl Recipe {
             mistakes.push(|| {
                 let allowed = format!("a number from -{MAX_LENGTH:e} to {MAX_LENGTH:e}");
                 let wrong = row.place[axis].wrong(name, &allowed);
-                self.where_placed(wrong, row.position[axis], center[axis])
+                where_placed(wrong, row.position[axis], center[axis], "`scale` and `offset`")
             });
         }
         center
@@ -194,20 +194,10 @@ impl Recipe {
         if let Err(super::Invalid(allowed)) = check_radius(radius) {
             mistakes.push(|| {
                 let wrong = row.radius_place.wrong("radius", &allowed);
-                self.where_placed(wrong, own, radius)
+                where_placed(wrong, own, radius, "`scale`")
             });
         }
         Some(radius)
-    }
-
-    /// Says what a number became in the scene, where it is not the same there.
-    fn where_placed(&self, wrong: Diagnostic, own: f64, placed: f64) -> Diagnostic {
-        // Infinities and NaN speak for themselves.
-        if own.is_finite() && own != placed {
-            wrong.label(format!("{placed:e} in the scene, by its `scale` and `offset`"))
-        } else {
-            wrong
-        }
     }
 
     /// The scene's, with the colour of the row if it has one.
@@ -219,6 +209,16 @@ impl Recipe {
             (Some(albedo), _) => Some(Surface::Diffuse(albedo)),
             (None, surface) => surface,
         }
+    }
+}
+
+/// Says what a number became in the scene, by `keys` of its cloud, where it is not the same there.
+fn where_placed(wrong: Diagnostic, own: f64, placed: f64, keys: &str) -> Diagnostic {
+    // Infinities and NaN speak for themselves.
+    if own.is_finite() && own.to_bits() != placed.to_bits() {
+        wrong.label(format!("{placed:.3e} in the scene, by {keys}"))
+    } else {
+        wrong
     }
 }
 

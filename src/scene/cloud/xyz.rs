@@ -15,8 +15,8 @@ use crate::scene::error::quoted;
 /// Lines before the first atom.
 const HEAD: usize = 2;
 
-const FORMAT: &str = "the first line is the number of atoms, the second a comment, and each other \
-                      line an element and its x, y, z";
+const FORMAT: &str = "line 1 is the number of atoms, line 2 a comment, and each line from 3 on an \
+                      element and its x, y, z";
 
 /// The atoms of a file whose head was read.
 pub(crate) struct Atoms<'a>(Lines<'a>);
@@ -29,7 +29,7 @@ impl<'a> Atoms<'a> {
         };
         let number = Field::new(first.start, first.text);
         let Some(count) = number.text().parse().ok().filter(|&count: &usize| count > 0) else {
-            let wrong = number.wrong("the first line", "the number of atoms");
+            let wrong = Diagnostic::new(number.span(), "the first line must be the number of atoms");
             return Err(wrong.label("not a whole number from 1 on").note(FORMAT).into());
         };
         body.next();
@@ -41,8 +41,8 @@ impl<'a> Atoms<'a> {
             return Err(Diagnostic::new(at, ends).note(mend).into());
         }
         if let Some(more) = rest.find(|line| !line.text.trim().is_empty()) {
-            let wrong = Diagnostic::new(more.span(), format!("this file goes on after {count} atoms"));
-            let mend = "its first line says how many there are; of several frames, keep one";
+            let wrong = Diagnostic::new(more.span(), format!("this file goes on after atom {count}"));
+            let mend = "that many its first line says; of several frames, keep one";
             return Err(wrong.note(mend).into());
         }
         Ok(Self(atoms))

@@ -122,7 +122,7 @@ fn named<'a>(field: &Field<'a>, log: &mut Log) -> Option<(&'a str, Format)> {
     let format = Format::of(name).filter(|_| !name.contains(char::is_control));
     if format.is_none() {
         let allowed = "the name of a file that ends in `.csv` or `.xyz`";
-        let columns = "a .csv has a header with x, y, z, and where known radius, and r, g, b";
+        let columns = "a .csv has a header with x, y, z, and perhaps radius, and r, g, b";
         log.push(field.wrong(allowed).note(columns).note("an .xyz is a list of atoms"));
     }
     Some((name, format?))
@@ -165,7 +165,7 @@ impl Cloud<'_> {
                 if !self.table.mistyped("radius") {
                     log.push(
                         lacks("radius")
-                            .note("it is needed where the file has no column `radius`"),
+                            .note("`radius` is that of every sphere of a file without a column `radius`"),
                     );
                 }
             }
@@ -185,7 +185,7 @@ impl Cloud<'_> {
             if !self.table.mistyped("material") {
                 log.push(
                     lacks("material")
-                        .note("it is needed where the file has no columns `r`, `g` and `b`"),
+                        .note("`material` is that of every sphere of a file without columns `r`, `g`, `b`"),
                 );
             }
         }
