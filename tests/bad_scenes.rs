@@ -122,7 +122,7 @@ fn text_in_another_encoding_is_refused_with_the_place() {
 2 | # caf\u{fffd}
   |      ^ the byte here is 0xE9
   |
-  = a scene file is plain text; save it with the encoding UTF-8",
+  = save it as plain text with the encoding UTF-8",
         path.display()
     );
     assert_eq!(error.to_string(), expected);
