@@ -9,10 +9,10 @@ use std::path::Path;
 /// How many there are.
 const COUNT: usize = 12_000;
 /// Where the arms start, and how far out they reach.
-const INNER: f64 = 0.62;
+const INNER: f64 = 0.5;
 const OUTER: f64 = 3.3;
 /// Angle between the arms and circles around the middle, of a wide-open spiral.
-const PITCH: f64 = 17.0 * PI / 180.0;
+const PITCH: f64 = 14.0 * PI / 180.0;
 /// Least space between two particles: more than the last decimal that is written.
 const GAP: f64 = 0.002;
 
@@ -32,10 +32,7 @@ pub fn csv() -> String {
     }
     let mut text = "x,y,z,radius,r,g,b\n".to_owned();
     for Particle { center: [x, y, z], radius, rgb: [r, g, b] } in particles {
-        let written = writeln!(
-            text,
-            "{x:.4},{y:.4},{z:.4},{radius:.4},{r:.3},{g:.3},{b:.3}"
-        );
+        let written = writeln!(text, "{x:.4},{y:.4},{z:.4},{radius:.4},{r:.3},{g:.3},{b:.3}");
         written.expect("a string takes every write");
     }
     text
@@ -78,13 +75,17 @@ fn arm(random: &mut Random) -> Particle {
     let young = out.min(1.0);
     if random.uniform() < 0.05 {
         let radius = 0.022 + 0.018 * random.uniform();
-        return Particle { center, radius, rgb: mixed([0.9, 0.22, 0.38], [0.95, 0.4, 0.5], random) };
+        return Particle {
+            center,
+            radius,
+            rgb: mixed([0.95, 0.10, 0.28], [0.95, 0.25, 0.40], random),
+        };
     }
     let radius = 0.010 + 0.022 * random.uniform().powi(3);
     let near = [0.85, 0.80, 0.72];
-    let far = [0.28, 0.48, 0.92];
+    let far = [0.14, 0.34, 0.92];
     let rgb = [0, 1, 2].map(|c| near[c] + (far[c] - near[c]) * young);
-    Particle { center, radius, rgb: mixed(rgb, [0.75, 0.82, 0.95], random) }
+    Particle { center, radius, rgb: mixed(rgb, [0.55, 0.68, 0.95], random) }
 }
 
 /// A colour somewhere between two.
@@ -100,7 +101,8 @@ impl Random {
     /// In [0, 1).
     #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
     fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 

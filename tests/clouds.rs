@@ -162,7 +162,8 @@ fn atoms_have_the_size_and_colour_of_their_element() {
 #[test]
 fn the_hash_counts_spheres_and_not_files() {
     let by_rows = scene(ONE_CSV, &[("a.csv", "x,y,z\n1,2,3\n")]);
-    let by_hand = scene("spheres = [{ center = [1, 2, 3], radius = 0.5, material = \"red\" }]", &[]);
+    let by_hand =
+        scene("spheres = [{ center = [1, 2, 3], radius = 0.5, material = \"red\" }]", &[]);
     assert_eq!(by_rows.hash(), by_hand.hash());
     let moved = scene(ONE_CSV, &[("a.csv", "x,y,z\n1,2,3.5\n")]);
     assert_ne!(moved.hash(), by_hand.hash());
@@ -184,7 +185,8 @@ fn tables_of_another_writer_are_read_as_by_another_reader() {
                 let scale = 10.0_f64.powi(i32::try_from(next() % 29).expect("small") - 14);
                 (f64::from_bits(next() | 0x3FF0_0000_0000_0000) - 1.5) * scale
             });
-            let name = ["", "a,b", "\"", " \"\"x\", ", "é"][usize::try_from(next() % 5).expect("small")];
+            let name =
+                ["", "a,b", "\"", " \"\"x\", ", "é"][usize::try_from(next() % 5).expect("small")];
             let record = [z.to_string(), name.to_owned(), format!("{x:e}"), y.to_string()];
             writer.write_record(record).expect("memory takes every write");
         }
@@ -264,7 +266,10 @@ clouds = [
 fn text_has_no_data_files() {
     let error = parse("a.toml", &format!("{HEAD}{ONE_CSV}")).expect_err("no file is read");
     let message = error.to_string();
-    assert!(message.starts_with("error: there is no folder in which to look for `a.csv`"), "{message}");
+    assert!(
+        message.starts_with("error: there is no folder in which to look for `a.csv`"),
+        "{message}"
+    );
 }
 
 #[test]

@@ -79,7 +79,8 @@ mod tests {
         let mut expected: Vec<Sphere> = Vec::new();
         for sphere in &spheres {
             let same = |other: &Sphere| {
-                other.center() == sphere.center() && other.radius() <= sphere.radius()
+                other.center() == sphere.center()
+                    && other.radius() <= sphere.radius()
                     && other.radius() >= sphere.radius()
             };
             if !expected.iter().any(same) {

@@ -125,7 +125,7 @@ impl Sphere {
     }
 
     /// Says for messages that the sphere is that of a line of a data file, counted from 1.
-    pub(super) fn from_row(mut self, file: &Arc<str>, line: usize) -> Self {
+    pub(super) fn at_row(mut self, file: &Arc<str>, line: usize) -> Self {
         self.origin = Origin::Row(Arc::clone(file), u32::try_from(line).unwrap_or(u32::MAX));
         self
     }

@@ -79,13 +79,10 @@ impl<'a> Table<'a> {
         if mistakes.count > before {
             return None;
         }
-        let [x, y, z, radius, r, g, b] = numbers;
+        let [x, y, z, radius, rgb @ ..] = numbers;
         let [x_place, y_place, z_place, radius_place, colour_places @ ..] = places;
-        let colour = if self.has_colours() {
-            Some(colour([r, g, b], colour_places, mistakes)?)
-        } else {
-            None
-        };
+        let colour =
+            if self.has_colours() { Some(colour(rgb, colour_places, mistakes)?) } else { None };
         Some(Row {
             position: DVec3::new(x, y, z),
             place: [x_place, y_place, z_place],

@@ -47,7 +47,9 @@ pub(super) fn named(name: &str) -> Option<Element> {
     let by_number = |number: u8| ELEMENTS.iter().find(|element| element.0 == number);
     let found = match name.parse() {
         Ok(number) => by_number(number),
-        Err(_) if ["D", "T"].iter().any(|isotope| isotope.eq_ignore_ascii_case(name)) => by_number(1),
+        Err(_) if ["D", "T"].iter().any(|isotope| isotope.eq_ignore_ascii_case(name)) => {
+            by_number(1)
+        }
         Err(_) => ELEMENTS.iter().find(|element| element.1.eq_ignore_ascii_case(name)),
     };
     found.map(|&(_, _, radius, colour)| Element { radius, colour })

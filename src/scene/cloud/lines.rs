@@ -30,7 +30,7 @@ impl Line<'_> {
 }
 
 /// The lines of a text from one place on.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Lines<'a> {
     rest: &'a str,
     /// Number of the first line of the rest.
@@ -50,22 +50,22 @@ impl<'a> Lines<'a> {
     }
 
     /// The first `length` bytes, which end with a line, and the rest.
-    fn split_at(self, length: usize) -> (Self, Self) {
+    fn split_at(&self, length: usize) -> (Self, Self) {
         let (first, rest) = self.rest.split_at(length);
         let number = self.number + newlines(first);
-        (Self { rest: first, ..self }, Self { rest, number, start: self.start + length })
+        (Self { rest: first, ..*self }, Self { rest, number, start: self.start + length })
     }
 
     /// The first `count` lines or as many as there are, their number, and the rest.
-    pub(super) fn first(self, count: usize) -> (Self, usize, Self) {
-        let mut behind = self;
+    pub(super) fn first(&self, count: usize) -> (Self, usize, Self) {
+        let mut behind = self.clone();
         let found = behind.by_ref().take(count).count();
         let (first, rest) = self.split_at(behind.start - self.start);
         (first, found, rest)
     }
 
     /// Pieces of some [`PIECE_BYTES`] each.
-    fn pieces(self) -> Vec<Self> {
+    fn pieces(&self) -> Vec<Self> {
         let mut pieces = Vec::new();
         let (mut rest, mut start) = (self.rest, self.start);
         while !rest.is_empty() {
@@ -87,13 +87,13 @@ impl<'a> Lines<'a> {
 
     /// Appends what `read` makes of each line to `spheres`, in order; it may pass over a line.
     pub(super) fn read(
-        self,
+        &self,
         spheres: &mut Vec<Sphere>,
         read: impl Fn(&Line<'a>, &mut Mistakes) -> Option<Sphere> + Sync,
     ) -> Result<(), Mistakes> {
         let read = |piece: &Self| {
             let mut mistakes = Mistakes::default();
-            let found = piece.filter_map(|line| read(&line, &mut mistakes)).collect();
+            let found = piece.clone().filter_map(|line| read(&line, &mut mistakes)).collect();
             (found, mistakes)
         };
         let pieces = self.pieces();
@@ -137,7 +137,7 @@ pub(super) fn count(text: &str) -> usize {
 }
 
 fn newlines(text: &str) -> usize {
-    text.as_bytes().iter().filter(|&&byte| byte == b'\n').count()
+    text.matches('\n').count()
 }
 
 #[cfg(test)]
@@ -146,8 +146,9 @@ mod tests {
 
     #[test]
     fn lines_know_their_place() {
-        let lines: Vec<(usize, usize, &str)> =
-            Lines::new("ab\r\n\n\u{e9}\nc").map(|line| (line.number, line.start, line.text)).collect();
+        let lines: Vec<(usize, usize, &str)> = Lines::new("ab\r\n\n\u{e9}\nc")
+            .map(|line| (line.number, line.start, line.text))
+            .collect();
         assert_eq!(lines, [(1, 0, "ab"), (2, 4, ""), (3, 5, "\u{e9}"), (4, 8, "c")]);
         assert_eq!(Lines::new("").next(), None);
         assert_eq!(["", "a", "a\n", "a\n\n", "a\nb"].map(count), [0, 1, 1, 2, 2]);
@@ -156,7 +157,7 @@ mod tests {
     /// Pieces put together again are the lines of the whole.
     #[test]
     fn pieces_hold_every_line_once() {
-        let text: String = (0..400_000).map(|n| format!("{n}\n")).collect();
+        let text = "1\n23\n\n".repeat(200_000);
         let whole = Lines::new(&text);
         let pieces = whole.pieces();
         assert!(pieces.len() > 2, "{} pieces", pieces.len());

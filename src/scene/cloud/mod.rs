@@ -165,7 +165,7 @@ impl Recipe {
         }
         let surface = self.surface(row.colour)?;
         let sphere = Sphere::new(center, radius?, surface).expect("each part was judged above");
-        Some(sphere.from_row(&self.file, line.number))
+        Some(sphere.at_row(&self.file, line.number))
     }
 
     /// offset + scale·(x, y, z)

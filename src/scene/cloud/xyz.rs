@@ -1,6 +1,6 @@
 //! The chemists' .xyz files: a number of atoms, a comment, and an atom in each line.
 //!
-//! The format is that of the XMol program (Minnesota Supercomputer Center, 1990s): `C 0.0 0.0
+//! The format is that of the program `XMol` (Minnesota Supercomputer Center, 1990s): `C 0.0 0.0
 //! 0.0`, an element by symbol or atomic number and its position in ångström; what stands
 //! behind the position (charges, forces) is passed over.
 
@@ -29,7 +29,8 @@ impl<'a> Atoms<'a> {
         };
         let number = Field::new(first.start, first.text);
         let Some(count) = number.text().parse().ok().filter(|&count: &usize| count > 0) else {
-            let wrong = Diagnostic::new(number.span(), "the first line must be the number of atoms");
+            let wrong =
+                Diagnostic::new(number.span(), "the first line must be the number of atoms");
             return Err(wrong.label("not a whole number from 1 on").note(FORMAT).into());
         };
         body.next();
@@ -41,7 +42,8 @@ impl<'a> Atoms<'a> {
             return Err(Diagnostic::new(at, ends).note(mend).into());
         }
         if let Some(more) = rest.find(|line| !line.text.trim().is_empty()) {
-            let wrong = Diagnostic::new(more.span(), format!("this file goes on after atom {count}"));
+            let wrong =
+                Diagnostic::new(more.span(), format!("this file goes on after atom {count}"));
             let mend = "that many its first line says; of several frames, keep one";
             return Err(wrong.note(mend).into());
         }

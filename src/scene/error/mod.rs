@@ -187,12 +187,7 @@ mod tests {
     use super::*;
 
     fn invalid(text: &str, diagnostics: Vec<Diagnostic>) -> SceneFileError {
-        SceneFileError::Invalid {
-            name: "a.toml".into(),
-            text: text.into(),
-            diagnostics,
-            others: 0,
-        }
+        SceneFileError::Invalid { name: "a.toml".into(), text: text.into(), diagnostics, others: 0 }
     }
 
     #[test]

@@ -86,33 +86,31 @@ fn cloud<'a>(
         field.accept(check_scale(scale), log).map(|()| scale)
     });
     let offset = optional(&table, "offset", log, point);
-    let surface = optional(&table, "material", log, |field, log| {
-        material_named(field, materials, log)
-    });
+    let surface =
+        optional(&table, "material", log, |field, log| material_named(field, materials, log));
     let ((name, format), file) = file?;
     let recipe = Recipe {
         file: name.into(),
-        offset: offset?.unwrap_or(DVec3::ZERO),
-        scale: scale?.unwrap_or(1.0),
-        radius: radius?,
-        surface: surface?,
+        offset: offset.ok()?.unwrap_or(DVec3::ZERO),
+        scale: scale.ok()?.unwrap_or(1.0),
+        radius: radius.ok()?,
+        surface: surface.ok()?,
     };
     let radius = table.optional("radius");
     Some(Cloud { table, file, format, radius, recipe })
 }
 
-/// What `read` makes of a key; `Some(None)` if the table does not have it, and `None` if it is
-/// wrong.
+/// Stands for a mistake that is in the log.
+struct Told;
+
+/// What `read` makes of a key; `None` if the table does not have it.
 fn optional<'a, T>(
     table: &Table<'a>,
     key: &str,
     log: &mut Log,
     read: impl FnOnce(&Field<'a>, &mut Log) -> Option<T>,
-) -> Option<Option<T>> {
-    match table.optional(key) {
-        Some(field) => read(&field, log).map(Some),
-        None => Some(None),
-    }
+) -> Result<Option<T>, Told> {
+    table.optional(key).map(|field| read(&field, log).ok_or(Told)).transpose()
 }
 
 /// The name of a data file, and its format.
@@ -163,10 +161,9 @@ impl Cloud<'_> {
             (None, Radii::Missing) => {
                 suits = false;
                 if !self.table.mistyped("radius") {
-                    log.push(
-                        lacks("radius")
-                            .note("`radius` is that of every sphere of a file without a column `radius`"),
-                    );
+                    log.push(lacks("radius").note(
+                        "`radius` is that of every sphere of a file without a column `radius`",
+                    ));
                 }
             }
             (Some(radius), Radii::Column) => {
@@ -183,10 +180,9 @@ impl Cloud<'_> {
         if self.recipe.surface.is_none() && !rows.have_colours() {
             suits = false;
             if !self.table.mistyped("material") {
-                log.push(
-                    lacks("material")
-                        .note("`material` is that of every sphere of a file without columns `r`, `g`, `b`"),
-                );
+                log.push(lacks("material").note(
+                    "`material` is that of every sphere of a file without columns `r`, `g`, `b`",
+                ));
             }
         }
         suits.then_some(())

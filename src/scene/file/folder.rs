@@ -41,48 +41,43 @@ impl<'a> Folder<'a> {
         };
         let path = folder.join(name);
         let shown = path.display().to_string();
-        let bytes = match read(&path, self.bytes_left) {
-            Ok(Some(bytes)) => bytes,
-            Ok(None) => {
-                let most = MAX_BYTES >> 20;
-                log.push(
-                    wrong(format!("{} is too large", quoted(name)))
-                        .note(format!("the data files of a scene have at most {most} MiB together")),
-                );
-                return None;
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {
-                log.push(
-                    wrong(format!("there is no file {}", quoted(name)))
-                        .label(format!("looked for as {shown}"))
-                        .note("names of data files start in the folder of the scene file"),
-                );
-                return None;
-            }
-            Err(error) => {
-                log.push(wrong(format!("cannot read {}: {error}", quoted(name))));
-                return None;
-            }
-        };
+        let bytes =
+            match read(&path, self.bytes_left) {
+                Ok(Some(bytes)) => bytes,
+                Ok(None) => {
+                    let most = MAX_BYTES >> 20;
+                    log.push(wrong(format!("{} is too large", quoted(name))).note(format!(
+                        "the data files of a scene have at most {most} MiB together"
+                    )));
+                    return None;
+                }
+                Err(error) if error.kind() == ErrorKind::NotFound => {
+                    log.push(
+                        wrong(format!("there is no file {}", quoted(name)))
+                            .label(format!("looked for as {shown}"))
+                            .note("names of data files start in the folder of the scene file"),
+                    );
+                    return None;
+                }
+                Err(error) => {
+                    log.push(wrong(format!("cannot read {}: {error}", quoted(name))));
+                    return None;
+                }
+            };
         self.bytes_left -= bytes.len() as u64;
         self.counted(decoded(shown, bytes, format, log)?, file, name, log)
     }
 
     /// `data`, if no more lines were read than are allowed.
     fn counted(&mut self, data: Data, file: &Field<'_>, name: &str, log: &mut Log) -> Option<Data> {
-        match self.lines_left.checked_sub(data.lines()) {
-            Some(left) => {
-                self.lines_left = left;
-                Some(data)
-            }
-            None => {
-                let wrong = format!("{} has too many lines, {}", quoted(name), data.lines());
-                log.push(Diagnostic::new(file.value().span(), wrong).note(format!(
-                    "the data files of a scene have at most {MAX_LINES} lines together"
-                )));
-                None
-            }
-        }
+        let Some(left) = self.lines_left.checked_sub(data.lines()) else {
+            let wrong = format!("{} has too many lines, {}", quoted(name), data.lines());
+            let most = format!("the data files of a scene have at most {MAX_LINES} lines together");
+            log.push(Diagnostic::new(file.value().span(), wrong).note(most));
+            return None;
+        };
+        self.lines_left = left;
+        Some(data)
     }
 }
 

@@ -21,7 +21,12 @@ pub struct Source {
 }
 
 impl Source {
-    pub(super) fn new(name: &str, text: &str, root: &DeTable<'_>, clouds: Vec<(Data, usize)>) -> Self {
+    pub(super) fn new(
+        name: &str,
+        text: &str,
+        root: &DeTable<'_>,
+        clouds: Vec<(Data, usize)>,
+    ) -> Self {
         let spheres = root.get("spheres").and_then(|value| value.get_ref().as_array());
         let radius = |item: &toml::Spanned<DeValue<'_>>| place_in(item, "radius");
         Self {
