@@ -54,8 +54,9 @@ fn csv(rows: usize) -> String {
     for _ in 0..rows {
         let [x, y, z] = [0; 3].map(|_| random.next() * 2.0 - 1.0);
         let radius = 1e-3 + 1e-3 * random.next();
-        let [r, g, b] = [0; 3].map(|_| random.next());
-        writeln!(text, "{x},{y},{z},{radius},{r},{g},{b}").expect("a string takes every write");
+        let [red, green, blue] = [0; 3].map(|_| random.next());
+        writeln!(text, "{x},{y},{z},{radius},{red},{green},{blue}")
+            .expect("a string takes every write");
     }
     text
 }

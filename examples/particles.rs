@@ -21,6 +21,7 @@ fn main() -> io::Result<()> {
 }
 
 /// The table: positions and radii in a unit of their own, and linear albedos.
+#[must_use]
 pub fn csv() -> String {
     let mut random = Random(20_261_125);
     let mut particles: Vec<Particle> = Vec::with_capacity(COUNT);
@@ -31,9 +32,10 @@ pub fn csv() -> String {
         }
     }
     let mut text = "x,y,z,radius,r,g,b\n".to_owned();
-    for Particle { center: [x, y, z], radius, rgb: [r, g, b] } in particles {
-        let written = writeln!(text, "{x:.4},{y:.4},{z:.4},{radius:.4},{r:.3},{g:.3},{b:.3}");
-        written.expect("a string takes every write");
+    for Particle { center, radius, rgb } in particles {
+        let [x, y, z] = center;
+        let [red, green, blue] = rgb;
+        let _ = writeln!(text, "{x:.4},{y:.4},{z:.4},{radius:.4},{red:.3},{green:.3},{blue:.3}");
     }
     text
 }

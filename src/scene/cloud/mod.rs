@@ -49,11 +49,8 @@ pub(super) struct Data {
 }
 
 impl Data {
-    /// `name` stands for the file in messages; a byte order mark is taken off `text`.
-    pub(super) fn new(name: String, mut text: String, format: Format) -> Self {
-        if text.starts_with('\u{feff}') {
-            text.drain(..'\u{feff}'.len_utf8());
-        }
+    /// `name` stands for the file in messages; `text` has no byte order mark.
+    pub(super) fn new(name: String, text: String, format: Format) -> Self {
         Self { name, text, format }
     }
 

@@ -15,6 +15,9 @@ const MAX_BYTES: u64 = 512 << 20;
 /// Most lines of the data files of one scene together; as spheres they take 1 GB.
 const MAX_LINES: usize = 10_000_000;
 
+/// What some programs write before a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
 /// The folder of a scene file, and how much may still be read from it.
 pub(super) struct Folder<'a> {
     /// `None` if the scene comes from no file.
@@ -82,7 +85,10 @@ impl<'a> Folder<'a> {
 }
 
 /// The text of a data file.
-fn decoded(shown: String, bytes: Vec<u8>, format: Format, log: &mut Log) -> Option<Data> {
+fn decoded(shown: String, mut bytes: Vec<u8>, format: Format, log: &mut Log) -> Option<Data> {
+    if bytes.starts_with(BYTE_ORDER_MARK) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
     match String::from_utf8(bytes) {
         Ok(text) => Some(Data::new(shown, text, format)),
         Err(error) => {
