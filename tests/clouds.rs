@@ -1,5 +1,6 @@
 //! Spheres from data files: what is read, where it stands, and how much of it.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -144,7 +145,8 @@ fn atoms_have_the_size_and_colour_of_their_element() {
     let half = parts_of("clouds = [{ file = \"m.xyz\", scale = 0.5 }]");
     assert_eq!(half.len(), 5);
     for (n, &(center, radius, surface)) in half.iter().enumerate() {
-        assert_eq!(center, [0.5 * [0.0, 1.0, 2.0, 3.0, 4.0][n], 0.0, 0.0]);
+        let expected = [[0.0, 0.5, 1.0, 1.5, 2.0][n], 0.0, 0.0];
+        assert_eq!(center.map(f64::to_bits), expected.map(f64::to_bits));
         assert_eq!(radius.to_bits(), (0.5 * radii[n]).to_bits());
         let Surface::Diffuse(albedo) = surface else { panic!("{surface:?}") };
         let off = (albedo.rgb() - DVec3::from_array(colours[n].map(linear))).abs();
@@ -155,7 +157,9 @@ fn atoms_have_the_size_and_colour_of_their_element() {
         "clouds = [{ file = \"m.xyz\", scale = 0.5, radius = 0.3, material = \"gloss\" }]",
     );
     assert!(equal.iter().all(|&(_, radius, _)| radius.to_bits() == 0.3_f64.to_bits()));
-    assert!(equal.iter().all(|part| matches!(part.2, Surface::Glossy(_, n) if n.get() == 7.0)));
+    assert!(equal.iter().all(
+        |part| matches!(part.2, Surface::Glossy(_, n) if n.get().to_bits() == 7.0_f64.to_bits())
+    ));
 }
 
 /// A sphere is the same wherever it was read from.
@@ -217,7 +221,7 @@ fn mistakes_are_counted_and_the_first_shown() {
     let mut text = "x,y,z,note\n".to_owned();
     for n in 0..60_000 {
         let z = if n % 2 == 1 { "?" } else { "0" };
-        text.push_str(&format!("{n},0,{z},something of no use that makes the row long\n"));
+        let _ = writeln!(text, "{n},0,{z},something of no use that makes the row long");
     }
     let message = refused(ONE_CSV, &[("a.csv", &text)]);
     let places: Vec<&str> = message.lines().filter(|line| line.contains("--> a.csv:")).collect();
