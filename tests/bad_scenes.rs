@@ -23,13 +23,16 @@ fn names(ending: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The message for `scenes/bad/NAME.toml`, with a newline at its end as in the file.
+/// The message for `scenes/bad/NAME.toml`, without the folder of the files that it names, and
+/// with a newline at its end as in the file.
 fn message(name: &str) -> String {
-    let file = format!("{name}.toml");
-    let text = fs::read_to_string(folder().join(&file)).expect("a bad scene can be read");
-    match parse(&file, &text) {
-        Ok(_) => panic!("{file} is accepted"),
-        Err(error) => format!("{error}\n"),
+    let file = folder().join(format!("{name}.toml"));
+    match load(&file) {
+        Ok(_) => panic!("{name}.toml is accepted"),
+        Err(error) => {
+            let folder = folder().join("");
+            format!("{error}\n").replace(&folder.display().to_string(), "")
+        }
     }
 }
 
@@ -119,7 +122,7 @@ fn text_in_another_encoding_is_refused_with_the_place() {
 2 | # caf\u{fffd}
   |      ^ the byte here is 0xE9
   |
-  = a scene file is plain text; save it with the encoding UTF-8",
+  = save it as plain text with the encoding UTF-8",
         path.display()
     );
     assert_eq!(error.to_string(), expected);

@@ -7,13 +7,13 @@ mod support {
 
 use std::fs;
 use std::path::Path;
-use support::hostile::{check_picture, check_scene};
+use support::hostile::{check_data, check_picture, check_scene};
 
 /// Runs `check` over the files in `tests/corpus/NAME`; returns how many there are and how
 /// many it accepts.
 fn over(name: &str, check: fn(&[u8], &Path) -> bool) -> (usize, usize) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(name);
-    let scratch = tempfile::NamedTempFile::new().expect("a temporary file can be made");
+    let scratch = tempfile::tempdir().expect("a temporary folder can be made");
     let entries = fs::read_dir(&folder).expect("the corpus can be listed");
     let (mut files, mut accepted) = (0, 0);
     for entry in entries {
@@ -21,7 +21,7 @@ fn over(name: &str, check: fn(&[u8], &Path) -> bool) -> (usize, usize) {
         println!("{}", path.display());
         let bytes = fs::read(&path).expect("the corpus can be read");
         files += 1;
-        accepted += usize::from(check(&bytes, scratch.path()));
+        accepted += usize::from(check(&bytes, &scratch.path().join("scratch")));
     }
     (files, accepted)
 }
@@ -30,6 +30,12 @@ fn over(name: &str, check: fn(&[u8], &Path) -> bool) -> (usize, usize) {
 fn scenes_are_read_or_refused() {
     let (files, accepted) = over("scene", check_scene);
     assert!(files > 1000 && accepted > 40, "{files} files, {accepted} scenes");
+}
+
+#[test]
+fn data_is_read_or_refused() {
+    let (files, accepted) = over("data", check_data);
+    assert!(files > 30 && accepted > 5, "{files} files, {accepted} of them data");
 }
 
 #[test]

@@ -7,11 +7,16 @@
 //! unit of W·sr⁻¹·m⁻² per channel (linear, Rec. 709 primaries).
 
 mod camera;
+mod cloud;
+mod coincident;
 mod error;
 mod file;
 mod hash;
 mod settings;
+mod spelling;
 mod sphere;
+
+use coincident::drop_hidden;
 
 pub use camera::{Camera, ImageSize};
 pub use error::{Diagnostic, SceneFileError};
@@ -21,7 +26,6 @@ pub use settings::{Estimator, RenderSettings};
 pub use sphere::{Albedo, Exponent, Radiance, Sphere, Surface};
 
 use glam::DVec3;
-use std::collections::HashSet;
 
 /// Largest magnitude of a coordinate or radius, in scene units.
 pub const MAX_LENGTH: f64 = 1e15;
@@ -101,11 +105,7 @@ impl Scene {
         for (ordinal, sphere) in (1..).zip(&mut spheres) {
             sphere.set_ordinal(ordinal);
         }
-        let mut places = HashSet::new();
-        spheres.retain(|sphere| {
-            let place = (sphere.center() + DVec3::ZERO).extend(sphere.radius());
-            places.insert(place.to_array().map(f64::to_bits))
-        });
+        drop_hidden(&mut spheres);
         Self { camera, size, settings, spheres }
     }
 

@@ -3,6 +3,7 @@
 use super::error::{printable, quoted};
 use super::{Invalid, MAX_EXPONENT, MAX_RADIANCE, MIN_RADIANCE, check_point, check_radius, refuse};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Reflectance ρ per channel, each in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,11 +89,22 @@ pub enum Surface {
 /// A sphere with its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sphere {
-    name: Option<String>,
+    origin: Origin,
     ordinal: usize,
     center: DVec3,
     radius: f64,
     surface: Surface,
+}
+
+/// Where a sphere comes from, for messages. A million spheres share the name of their file.
+#[derive(Debug, Clone, PartialEq)]
+enum Origin {
+    /// A part of the scene file without a name.
+    Nameless,
+    /// A part of the scene file with a name.
+    Named(Box<str>),
+    /// A data file and the number of a line of it, counted from 1.
+    Row(Arc<str>, u32),
 }
 
 impl Sphere {
@@ -102,23 +114,33 @@ impl Sphere {
     pub fn new(center: DVec3, radius: f64, surface: Surface) -> Result<Self, Invalid> {
         check_point(center)?;
         check_radius(radius)?;
-        Ok(Self { name: None, ordinal: 0, center, radius, surface })
+        Ok(Self { origin: Origin::Nameless, ordinal: 0, center, radius, surface })
     }
 
     /// Names the sphere for messages.
     #[must_use]
-    pub fn named(mut self, name: impl Into<String>) -> Self {
-        self.name = Some(name.into());
+    pub fn named(mut self, name: impl Into<Box<str>>) -> Self {
+        self.origin = Origin::Named(name.into());
+        self
+    }
+
+    /// Says for messages that the sphere is that of a line of a data file, counted from 1.
+    pub(super) fn at_row(mut self, file: &Arc<str>, line: usize) -> Self {
+        self.origin = Origin::Row(Arc::clone(file), u32::try_from(line).unwrap_or(u32::MAX));
         self
     }
 
     /// The name given in the scene file.
     #[must_use]
     pub fn name(&self) -> Option<&str> {
-        self.name.as_deref()
+        match &self.origin {
+            Origin::Named(name) => Some(name),
+            Origin::Nameless | Origin::Row(..) => None,
+        }
     }
 
-    /// Its number in the scene, counted from 1 in the order of the file; 0 before it is part
+    /// Its number in the scene, counted from 1 in the order of the file, in which the rows of
+    /// data files follow the spheres of the scene file; 0 before it is part
     /// of one.
     #[must_use]
     pub fn ordinal(&self) -> usize {
@@ -129,16 +151,23 @@ impl Sphere {
         self.ordinal = ordinal;
     }
 
-    /// What messages call it: `sphere 3`, with its name if it has one.
+    /// What messages call it: `sphere 3`, with its name or its row if it has one.
     #[must_use]
     pub fn title(&self) -> String {
-        title(self.ordinal, self.name())
+        match &self.origin {
+            Origin::Row(..) => format!("sphere {} ({})", self.ordinal, self.label()),
+            Origin::Nameless | Origin::Named(_) => title(self.ordinal, self.name()),
+        }
     }
 
-    /// What a table calls it: its name, made printable, or `sphere 3`.
+    /// What a table calls it: its name, made printable, its row, or `sphere 3`.
     #[must_use]
     pub fn label(&self) -> String {
-        self.name.as_deref().map_or_else(|| format!("sphere {}", self.ordinal), printable)
+        match &self.origin {
+            Origin::Nameless => title(self.ordinal, None),
+            Origin::Named(name) => printable(name),
+            Origin::Row(file, line) => format!("{}, line {line}", printable(file)),
+        }
     }
 
     /// Centre.

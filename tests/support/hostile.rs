@@ -1,4 +1,4 @@
-//! What must hold for any bytes that are read as a scene or as a picture. The fuzzers of
+//! What must hold for any bytes that are read as a scene, as its data or as a picture. The fuzzers of
 //! `fuzz/` call this for whatever they make up, and `corpus.rs` for what they have kept.
 
 #![allow(dead_code, reason = "each fuzzer uses one half of it")]
@@ -41,6 +41,39 @@ pub fn check_scene(bytes: &[u8], scratch: &Path) -> bool {
         Ok(scene) => check_accepted(&scene),
         Err(error) => check_refused(&error),
     }
+}
+
+/// What a scene may say about a data file: as little as it can, and something of everything.
+const CLOUDS: [&str; 2] =
+    ["", "radius = 0.5, material = \"m\", scale = 1e-9, offset = [1, -2, 1e15]"];
+
+/// Reads `bytes` as a data file of each format; `scratch` with other endings names files that
+/// may be overwritten. Returns whether a scene accepts them.
+///
+/// # Panics
+/// If anything that must hold does not.
+pub fn check_data(bytes: &[u8], scratch: &Path) -> bool {
+    let mut accepted = false;
+    for ending in ["csv", "xyz"] {
+        let data = scratch.with_extension(ending);
+        std::fs::write(&data, bytes).expect("the scratch file can be written");
+        let name = data.file_name().expect("a file").to_string_lossy();
+        for cloud in CLOUDS {
+            let text = format!(
+                "camera = {{ position = [0, 0, 9], look_at = [0, 0, 0], vertical_fov = 50 }}
+image = {{ width = 4, height = 3 }}
+materials.m = {{ glossy = [0.9, 0.9, 0.9], exponent = 7 }}
+clouds = [{{ file = \"{name}\", {cloud} }}]"
+            );
+            let scene = scratch.with_extension("toml");
+            std::fs::write(&scene, text).expect("the scratch file can be written");
+            accepted |= match load(&scene) {
+                Ok(scene) => check_accepted(&scene),
+                Err(error) => check_refused(&error),
+            };
+        }
+    }
+    accepted
 }
 
 fn check_refused(error: &SceneFileError) -> bool {

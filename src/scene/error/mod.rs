@@ -1,4 +1,4 @@
-//! What is wrong with a scene file, and where.
+//! What is wrong with a scene file or a data file, and where.
 
 mod excerpt;
 
@@ -14,11 +14,11 @@ use codespan_reporting::term::{Chars, Config, emit_to_write_style};
 use excerpt::Excerpt;
 
 /// Most mistakes that are shown; of the others, only their number.
-const MAX_SHOWN: usize = 20;
+pub(super) const MAX_SHOWN: usize = 20;
 /// Most characters of a key or name that a message repeats.
 const MAX_QUOTED: usize = 40;
 
-/// One mistake in a scene file.
+/// One mistake in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
     message: String,
@@ -86,14 +86,16 @@ pub enum SceneFileError {
         /// The most bytes that a scene file may have.
         limit: u64,
     },
-    /// The file was read, but its text is not a scene.
+    /// The file, or a data file that it names, was read, but its text is not right.
     Invalid {
         /// The file as it was named.
         name: String,
         /// The file's text, which the spans of the diagnostics point into.
         text: String,
-        /// Every mistake found, at least one, in the order of the text.
+        /// The mistakes found, at least one, in the order of the text.
         diagnostics: Vec<Diagnostic>,
+        /// How many more there are: 0 in a scene file, of which every mistake is kept.
+        others: usize,
     },
 }
 
@@ -117,7 +119,7 @@ impl SceneFileError {
                     ),
                 );
             }
-            Self::Invalid { name, text, diagnostics } => {
+            Self::Invalid { name, text, diagnostics, .. } => {
                 for diagnostic in diagnostics.iter().take(MAX_SHOWN) {
                     emit_excerpt(
                         &mut out,
@@ -128,10 +130,11 @@ impl SceneFileError {
             }
         }
         let mut rendered = String::from_utf8_lossy(out.as_slice()).trim_end().to_owned();
-        if let Self::Invalid { diagnostics, .. } = self
-            && diagnostics.len() > MAX_SHOWN
-        {
-            let _ = write!(rendered, "\n\n... and {} more", diagnostics.len() - MAX_SHOWN);
+        if let Self::Invalid { diagnostics, others, .. } = self {
+            let more = diagnostics.len().saturating_sub(MAX_SHOWN) + others;
+            if more > 0 {
+                let _ = write!(rendered, "\n\n... and {more} more");
+            }
         }
         rendered
     }
@@ -184,7 +187,7 @@ mod tests {
     use super::*;
 
     fn invalid(text: &str, diagnostics: Vec<Diagnostic>) -> SceneFileError {
-        SceneFileError::Invalid { name: "a.toml".into(), text: text.into(), diagnostics }
+        SceneFileError::Invalid { name: "a.toml".into(), text: text.into(), diagnostics, others: 0 }
     }
 
     #[test]

@@ -3,20 +3,27 @@
 use glam::DVec3;
 use toml::de::{DeTable, DeValue};
 
+use super::clouds::clouds;
+use super::folder::Folder;
 use super::spheres::{materials, spheres};
 use super::stray::list;
 use super::table::{Field, Table};
 use super::{Diagnostic, Log};
+use crate::scene::cloud::Data;
 use crate::scene::{Camera, Estimator, ImageSize, Invalid, RenderSettings, Scene, check_point};
 
-const ROOT_KEYS: &[&str] = &["camera", "image", "render", "materials", "spheres"];
+const ROOT_KEYS: &[&str] = &["camera", "image", "render", "materials", "spheres", "clouds"];
 const CAMERA_KEYS: &[&str] = &["position", "look_at", "up", "vertical_fov"];
 const IMAGE_KEYS: &[&str] = &["width", "height"];
 const RENDER_KEYS: &[&str] = &["spp", "bounces", "estimator", "seed"];
 
-/// The whole scene; `None` if a part of it could not be read. A scene may come back
-/// although there are mistakes in the log.
-pub(super) fn scene(root: &DeTable<'_>, log: &mut Log) -> Option<Scene> {
+/// The whole scene, and the data of its clouds with the number of rows of each; `None` if a part
+/// of it could not be read. A scene may come back although there are mistakes in the log.
+pub(super) fn scene(
+    root: &DeTable<'_>,
+    folder: Folder<'_>,
+    log: &mut Log,
+) -> Option<(Scene, Vec<(Data, usize)>)> {
     let root = Table::new("the scene".to_owned(), 0..0, root, ROOT_KEYS, log);
     let camera = section(&root, "camera", CAMERA_KEYS, log).and_then(|table| camera(&table, log));
     let size = section(&root, "image", IMAGE_KEYS, log).and_then(|table| image(&table, log));
@@ -25,8 +32,9 @@ pub(super) fn scene(root: &DeTable<'_>, log: &mut Log) -> Option<Scene> {
         .and_then(|field| open(&field, RENDER_KEYS, log))
         .map_or_else(RenderSettings::default, |table| render(&table, log));
     let materials = materials(&root, log);
-    let spheres = spheres(&root, materials.as_ref(), log);
-    Some(Scene::new(camera?, size?, settings, spheres))
+    let mut spheres = spheres(&root, materials.as_ref(), log);
+    let clouds = clouds(&root, materials.as_ref(), folder, &mut spheres, log);
+    Some((Scene::new(camera?, size?, settings, spheres), clouds))
 }
 
 /// A table that every scene has.

@@ -6,10 +6,11 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use super::sections::point;
-use super::stray::{list, nearest};
+use super::stray::list;
 use super::table::{Field, Table, found};
 use super::{Diagnostic, Log};
 use crate::scene::error::quoted;
+use crate::scene::spelling::nearest;
 use crate::scene::sphere::title;
 use crate::scene::{Albedo, Exponent, Radiance, Sphere, Surface, check_radius};
 
@@ -185,22 +186,29 @@ fn sphere<'a>(
 
 fn surface(table: &Table<'_>, materials: Option<&Materials<'_>>, log: &mut Log) -> Option<Surface> {
     match one_of(table, ["material", "emission"], log) {
-        One::First(material) => {
-            let name = material.text(log)?;
-            // Without a table of materials there is a message already.
-            let materials = materials?;
-            let surface = materials.get(name);
-            if surface.is_none() {
-                log.push(undefined(name, &material, materials));
-            }
-            *surface?
-        }
+        One::First(material) => material_named(&material, materials, log),
         One::Second(emission) => {
             let radiance = emission.vector(log)?;
             emission.accept(Radiance::new(radiance), log).map(Surface::Emitter)
         }
         One::Unclear => None,
     }
+}
+
+/// The surface of the material that a key names.
+pub(super) fn material_named(
+    field: &Field<'_>,
+    materials: Option<&Materials<'_>>,
+    log: &mut Log,
+) -> Option<Surface> {
+    let name = field.text(log)?;
+    // Without a table of materials there is a message already.
+    let materials = materials?;
+    let surface = materials.get(name);
+    if surface.is_none() {
+        log.push(undefined(name, field, materials));
+    }
+    *surface?
 }
 
 fn undefined(name: &str, field: &Field<'_>, materials: &Materials<'_>) -> Diagnostic {

@@ -15,7 +15,7 @@ pub(super) fn explain(text: &str, error: &toml::de::Error) -> Diagnostic {
     match (what, expected) {
         ("duplicate key", _) => wrong(&format!("{} is given twice", quoted(marked)))
             .label("the second one")
-            .note("only `[[spheres]]` may be repeated"),
+            .note("only `[[spheres]]` and `[[clouds]]` may be repeated"),
         // The one message for which the parser gives no place.
         ("recursion limit", _) => wrong("a key of this file has too many parts")
             .label("somewhere from here on")
@@ -53,5 +53,5 @@ pub(super) fn not_utf8(error: &Utf8Error, bytes: &[u8]) -> Diagnostic {
     let span = start..start + char::REPLACEMENT_CHARACTER.len_utf8();
     Diagnostic::new(span, "this file is not UTF-8 text")
         .label(format!("the byte here is 0x{:02X}", bytes[start]))
-        .note("a scene file is plain text; save it with the encoding UTF-8")
+        .note("save it as plain text with the encoding UTF-8")
 }

@@ -1,0 +1,20 @@
+//! Any bytes as a data file of a scene: read, and taken as far as to the device.
+
+#![no_main]
+
+#[path = "../../tests/support/hostile.rs"]
+mod hostile;
+
+use libfuzzer_sys::fuzz_target;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+static SCRATCH: LazyLock<PathBuf> = LazyLock::new(|| scratch("toml"));
+
+fn scratch(ending: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("candor-fuzz-{}.{ending}", std::process::id()))
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    hostile::check_data(bytes, &SCRATCH);
+});
