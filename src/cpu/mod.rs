@@ -8,7 +8,7 @@ mod connected;
 mod interior;
 mod light;
 pub mod material;
-mod nearest;
+pub mod nearest;
 mod pick;
 mod replay;
 pub mod rng;
@@ -16,10 +16,11 @@ pub mod sampling;
 mod scene;
 pub mod sphere;
 mod trace;
+mod tree;
 
 pub use replay::replay;
 pub use rng::SampleKey;
-pub use scene::PreparedScene;
+pub use scene::{PreparedScene, Search};
 pub use trace::trace;
 
 use crate::bound::sample_scale;
@@ -54,7 +55,7 @@ impl CpuTracer {
             .build()
             .map_err(|error| TraceError::Device(format!("cannot start the threads: {error}")))?;
         Ok(Self {
-            scene: PreparedScene::new(scene),
+            scene: pool.install(|| PreparedScene::new(scene)),
             film: Film::new(scene.size(), sample_scale(scene)),
             ledger: Ledger::default(),
             pool,

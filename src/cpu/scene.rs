@@ -2,9 +2,30 @@
 //! for laid out for it. It shares no packing with the kernel, so that a mistake in
 //! `src/kernel` cannot hide in both.
 
+use super::tree::Tree;
 use crate::scene::{Estimator, Scene, Surface};
 use crate::viewpoint::Viewpoint;
 use glam::DVec3;
+
+/// From so many spheres on, a hierarchy finds hits sooner than a loop over all of them.
+const HIERARCHY_FROM: usize = 16;
+
+/// How hits are found. Both ways find the same ones, to the bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// In a loop over all spheres.
+    Loop,
+    /// In a hierarchy of boxes.
+    Hierarchy,
+}
+
+impl Search {
+    /// The faster way for a scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        if scene.spheres().len() < HIERARCHY_FROM { Self::Loop } else { Self::Hierarchy }
+    }
+}
 
 /// A scene ready to be traced.
 #[derive(Debug, Clone)]
@@ -17,6 +38,8 @@ pub struct PreparedScene {
     pub(super) spheres: Vec<PreparedSphere>,
     /// Places of the emitters among them.
     pub(super) lights: Vec<usize>,
+    /// None where hits are found in a loop.
+    pub(super) tree: Option<Tree>,
 }
 
 /// The camera: `right` and `up` reach from the picture's centre to its edges on the
@@ -42,27 +65,36 @@ pub(super) struct PreparedSphere {
 }
 
 impl PreparedScene {
-    /// Prepares a scene.
+    /// Prepares a scene; of many spheres on the threads of the pool that it is called in.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
+        Self::searched(scene, Search::of(scene))
+    }
+
+    /// Prepares a scene, with a way to find hits.
+    #[must_use]
+    pub fn searched(scene: &Scene, search: Search) -> Self {
         let viewpoint = Viewpoint::of(scene);
         let sides = scene.spheres().iter().zip(viewpoint.inside());
+        let spheres: Vec<PreparedSphere> = sides
+            .map(|(sphere, &inside)| PreparedSphere {
+                center: sphere.center(),
+                radius: sphere.radius(),
+                inside,
+                surface: sphere.surface(),
+            })
+            .collect();
         Self {
             camera: Pinhole::of(scene),
             bounces: scene.settings().bounces(),
             estimator: scene.settings().estimator(),
-            lights: (0..scene.spheres().len())
-                .filter(|&i| matches!(scene.spheres()[i].surface(), Surface::Emitter(_)))
+            lights: (0..spheres.len())
+                .filter(|&i| matches!(spheres[i].surface, Surface::Emitter(_)))
                 .collect(),
             seed: scene.settings().seed(),
-            spheres: sides
-                .map(|(sphere, &inside)| PreparedSphere {
-                    center: sphere.center(),
-                    radius: sphere.radius(),
-                    inside,
-                    surface: sphere.surface(),
-                })
-                .collect(),
+            tree: (search == Search::Hierarchy)
+                .then(|| Tree::over(&spheres, viewpoint.focus(), viewpoint.extent())),
+            spheres,
         }
     }
 }

@@ -1,0 +1,138 @@
+//! Which spheres a ray can meet at all: a hierarchy over those seen from outside that are
+//! not larger than the scene.
+//!
+//! It loses no hit that the formulas of `sphere.rs` report, wrong ones included. Let E =
+//! k·u·(|f|² + R²), u = 2⁻⁵³, bound the errors of c and of b² − Δ, which are both f² − R² but
+//! for rounding. A hit is at t = c/(r + |b|) with r = √Δ, which is |b| − r + s with |s| ≤
+//! 2E/(r + |b|). From the centre the ray's line is at most √(R² + E) away, so where t is
+//! beyond the nearest point, t > |b|, the ray has come into the ball of that radius before.
+//! Elsewhere the point at t has the squared distance l² + (r − s)², l² + r² ≤ R² + E. That is
+//! the most for s ≥ 0. For s < 0, r·|s| ≤ 2E, and as t is 0 or more only |s| ≤ |b| − r
+//! counts, so s² ≤ 2E·(|b| − r)/(|b| + r) ≤ 2E: it is in the ball of the radius √(R² + 7E),
+//! though t may be √u·R too short. For |f| ≤ 2R that is within 18k·u·R of the sphere; for
+//! larger |f|, |b| is at least ½|f| and |s| ≤ 5k·u·|f|. A direction is unit to some 16u, and
+//! the operations count up to k < 64. So what is hit at t lies within 2⁻⁴²·(|f| + R) of the
+//! sphere, and |f| is at most the distances of origin and centre from the focus together.
+//! Boxes are wider than that by [`SLACK`] of the centre's and radius's part, rays see them
+//! wider by the origin's. What is left of it also covers the test itself, which sees a plane
+//! of a box off by 3u of its distance.
+
+use super::scene::PreparedSphere;
+use super::sphere::{MISS, Ray};
+use crate::hierarchy::{Bounds, Hierarchy, MOST_LEVELS};
+use glam::DVec3;
+
+/// By how much boxes are wider than spheres, of the coordinates that meet there: four times
+/// what the formulas need, and nothing beside the rounding of boxes to `f32`.
+const SLACK: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// A sphere in a leaf.
+#[derive(Debug, Clone)]
+pub(super) struct Member {
+    pub(super) center: DVec3,
+    pub(super) radius: f64,
+    /// Its place in the scene.
+    pub(super) sphere: usize,
+}
+
+/// A hierarchy of spheres.
+#[derive(Debug, Clone)]
+pub(super) struct Tree {
+    focus: DVec3,
+    hierarchy: Hierarchy,
+    /// In the order of the hierarchy.
+    members: Vec<Member>,
+    /// Places of the spheres that are not in it, ascending.
+    outside: Vec<usize>,
+}
+
+impl Tree {
+    /// Builds the tree in coordinates around `focus`; spheres larger than `extent` stay outside
+    /// of it, as do those seen from inside, whose far side may be hit.
+    pub(super) fn over(spheres: &[PreparedSphere], focus: DVec3, extent: f64) -> Self {
+        let is_inside = |&i: &usize| !spheres[i].inside && spheres[i].radius <= extent;
+        let (within, outside): (Vec<usize>, _) = (0..spheres.len()).partition(is_inside);
+        let bounds: Vec<Bounds> = within.iter().map(|&i| bounds(&spheres[i], focus)).collect();
+        let hierarchy = Hierarchy::build(&bounds);
+        let member = |&place: &u32| {
+            let sphere = within[place as usize];
+            Member { center: spheres[sphere].center, radius: spheres[sphere].radius, sphere }
+        };
+        let members = hierarchy.order().iter().map(member).collect();
+        Self { focus, hierarchy, members, outside }
+    }
+
+    /// Places of the spheres that are not in the tree.
+    pub(super) fn outside(&self) -> &[usize] {
+        &self.outside
+    }
+
+    /// Shows `meet` all members that are hit within a limit, and others; near ones come first
+    /// by and large. The limit is `limit`, and then what `meet` returns: a negative one ends
+    /// the search.
+    pub(super) fn visit(&self, ray: &Ray, limit: f64, mut meet: impl FnMut(&Member) -> f64) {
+        let nodes = self.hierarchy.nodes();
+        let probe = Probe::new(ray, self.focus);
+        let mut open = [(0, 0.0); MOST_LEVELS as usize];
+        let (mut limit, mut waiting) = (limit, 0);
+        let mut next = (!nodes.is_empty()).then_some(0);
+        while let Some(index) = next {
+            let node = &nodes[index];
+            let first = node.first as usize;
+            next = None;
+            if node.count == 0 {
+                let children = [index + 1, first].map(|i| (i, probe.entry(&nodes[i].bounds)));
+                let is_swapped = children[1].1 < children[0].1;
+                let (near, far) =
+                    if is_swapped { (children[1], children[0]) } else { children.into() };
+                let is_in_reach = |entry: f64| entry < MISS && entry <= limit;
+                if is_in_reach(far.1) {
+                    open[waiting] = far;
+                    waiting += 1;
+                }
+                next = is_in_reach(near.1).then_some(near.0);
+            } else {
+                for member in &self.members[first..first + node.count as usize] {
+                    limit = meet(member);
+                }
+            }
+            while next.is_none() && waiting > 0 {
+                waiting -= 1;
+                next = (open[waiting].1 <= limit).then_some(open[waiting].0);
+            }
+        }
+    }
+}
+
+/// The box of a sphere, around the focus.
+fn bounds(sphere: &PreparedSphere, focus: DVec3) -> Bounds {
+    let center = sphere.center - focus;
+    let slack = SLACK * (center.length() + sphere.radius);
+    Bounds::of_sphere(center, sphere.radius + slack)
+}
+
+/// A ray against boxes.
+struct Probe {
+    /// Where it starts, moved forwards and back by the slack along each axis.
+    ahead: DVec3,
+    behind: DVec3,
+    /// One over its direction, infinite across.
+    inverse: DVec3,
+}
+
+impl Probe {
+    fn new(ray: &Ray, focus: DVec3) -> Self {
+        let origin = ray.origin - focus;
+        let slack = SLACK * origin.length();
+        Self { ahead: origin + slack, behind: origin - slack, inverse: ray.direction.recip() }
+    }
+
+    /// Where the ray comes into a box, not before it starts; [`MISS`] where it does not.
+    #[inline]
+    fn entry(&self, bounds: &Bounds) -> f64 {
+        let low = (bounds.low.as_dvec3() - self.ahead) * self.inverse;
+        let high = (bounds.high.as_dvec3() - self.behind) * self.inverse;
+        let near = low.min(high).max_element().max(0.0);
+        if near <= low.max(high).min_element() { near } else { MISS }
+    }
+}
