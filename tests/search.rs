@@ -169,3 +169,22 @@ fn the_hierarchy_finds_the_shadows_of_the_loop() {
         assert!(name == "one" || hidden.iter().all(|&count| count > 50), "{name}: {hidden:?}");
     }
 }
+
+/// The scene with its spheres in the opposite order gives ties to the highest place.
+#[test]
+fn the_rays_tell_a_wrong_tie_rule() {
+    for (name, scene) in scenes().into_iter().filter(|(name, _)| *name == "coincident") {
+        let spheres: Vec<Sphere> = scene.spheres().iter().rev().cloned().collect();
+        let last = spheres.len() - 1;
+        let reversed = Scene::new(scene.camera().clone(), scene.size(), scene.settings(), spheres);
+        let looped = PreparedScene::searched(&scene, Search::Loop);
+        let wrong = PreparedScene::searched(&reversed, Search::Hierarchy);
+        let differs = |&(ref ray, leaving): &(Ray, Option<usize>)| {
+            let found = nearest(&wrong, ray, leaving.map(|place| last - place));
+            let found = found.map(|hit| Hit { sphere: last - hit.sphere, ..hit });
+            bits(found) != bits(nearest(&looped, ray, leaving))
+        };
+        let count = rays(&scene, budget(&scene)).iter().filter(|ray| differs(ray)).count();
+        assert!(count > 0, "{name}");
+    }
+}

@@ -21,7 +21,7 @@ mod tree;
 pub use replay::replay;
 pub use rng::SampleKey;
 pub use scene::{PreparedScene, Search};
-pub use trace::trace;
+pub use trace::{camera_ray, trace};
 
 use crate::bound::sample_scale;
 use crate::film::{Film, PixelSums, PixelWords, SampleScale};

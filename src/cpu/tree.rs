@@ -50,9 +50,18 @@ impl Tree {
     /// Builds the tree in coordinates around `focus`; spheres larger than `extent` stay outside
     /// of it, as do those seen from inside, whose far side may be hit.
     pub(super) fn over(spheres: &[PreparedSphere], focus: DVec3, extent: f64) -> Self {
+        Self::with_boxes(spheres, focus, extent, |sphere| bounds(sphere, focus))
+    }
+
+    fn with_boxes(
+        spheres: &[PreparedSphere],
+        focus: DVec3,
+        extent: f64,
+        bounds: impl Fn(&PreparedSphere) -> Bounds,
+    ) -> Self {
         let is_inside = |&i: &usize| !spheres[i].inside && spheres[i].radius <= extent;
         let (within, outside): (Vec<usize>, _) = (0..spheres.len()).partition(is_inside);
-        let bounds: Vec<Bounds> = within.iter().map(|&i| bounds(&spheres[i], focus)).collect();
+        let bounds: Vec<Bounds> = within.iter().map(|&i| bounds(&spheres[i])).collect();
         let hierarchy = Hierarchy::build(&bounds);
         let member = |&place: &u32| {
             let sphere = within[place as usize];
@@ -134,5 +143,56 @@ impl Probe {
         let high = (bounds.high.as_dvec3() - self.behind) * self.inverse;
         let near = low.min(high).max_element().max(0.0);
         if near <= low.max(high).min_element() { near } else { MISS }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scene::PreparedSphere;
+    use super::super::sphere::{MISS, Ray, entry, factored};
+    use super::{Bounds, DVec3, Tree};
+    use crate::scene::{Albedo, Surface};
+
+    fn sphere(y: f64, radius: f64) -> PreparedSphere {
+        let surface = Surface::Diffuse(Albedo::new(DVec3::ONE).expect("an albedo"));
+        PreparedSphere { center: DVec3::new(0.0, y, 0.0), radius, inside: false, surface }
+    }
+
+    /// How many spheres a tree shows to a ray along x at the height y.
+    fn shown(tree: &Tree, y: f64) -> u32 {
+        let ray = Ray { origin: DVec3::new(-5.0, y, 0.0), direction: DVec3::X };
+        let mut shown = 0;
+        tree.visit(&ray, MISS, |_| {
+            shown += 1;
+            MISS
+        });
+        shown
+    }
+
+    /// ¾ + 2⁻⁵³ from -¼ is 1 to `f64`: a ray that misses a unit sphere by a rounding, and its
+    /// box, which ends at ¾ to the bit, is said to hit it.
+    #[test]
+    fn hits_that_only_rounding_makes_are_kept() {
+        let height = 0.75_f64.next_up();
+        let spheres = [sphere(-0.25, 1.0), sphere(6.0, 1.0)];
+        let ray = Ray { origin: DVec3::new(-5.0, height, 0.0), direction: DVec3::X };
+        assert!(entry(factored(&ray, spheres[0].center, 1.0)) < MISS);
+        let tree = Tree::over(&spheres, DVec3::ZERO, 10.0);
+        assert_eq!(shown(&tree, height), 1);
+        // The judge sees boxes without the slack.
+        let tight = |s: &PreparedSphere| Bounds::of_sphere(s.center, s.radius);
+        assert_eq!(shown(&Tree::with_boxes(&spheres, DVec3::ZERO, 10.0, tight), height), 0);
+    }
+
+    /// The walls of a room and what holds the camera are for the loop.
+    #[test]
+    fn large_spheres_and_those_around_the_camera_stay_outside() {
+        let mut spheres = [sphere(0.0, 1.0), sphere(0.0, 20.0), sphere(3.0, 1.0), sphere(6.0, 1.0)];
+        spheres[2].inside = true;
+        let tree = Tree::over(&spheres, DVec3::ZERO, 10.0);
+        assert_eq!(tree.outside(), [1, 2]);
+        let mut members: Vec<usize> = tree.members.iter().map(|member| member.sphere).collect();
+        members.sort_unstable();
+        assert_eq!(members, [0, 3]);
     }
 }
