@@ -8,6 +8,7 @@
 mod bins;
 mod bounds;
 mod build;
+mod wide;
 
 pub use bounds::Bounds;
 pub use build::{LEAF, MOST_LEVELS};
