@@ -56,6 +56,28 @@ impl Hierarchy {
         &self.order
     }
 
+    /// Calls `visit` with the index of every box whose leaf a box overlaps or touches: all that
+    /// do so themselves, and others.
+    pub fn visit_overlapping(&self, bounds: &Bounds, mut visit: impl FnMut(u32)) {
+        let mut open = [0; MOST_LEVELS as usize + 1];
+        let mut waiting = usize::from(!self.nodes.is_empty());
+        while waiting > 0 {
+            waiting -= 1;
+            let index: usize = open[waiting];
+            let node = &self.nodes[index];
+            if !node.bounds.overlaps(bounds) {
+                continue;
+            }
+            let first = node.first as usize;
+            if node.count == 0 {
+                (open[waiting], open[waiting + 1]) = (first, index + 1);
+                waiting += 2;
+            } else {
+                self.order[first..first + node.count as usize].iter().for_each(|&i| visit(i));
+            }
+        }
+    }
+
     /// Inner nodes above the deepest leaf, at most [`MOST_LEVELS`]: so many places does the
     /// stack of a traversal need that puts one child aside and goes to the other.
     #[must_use]
