@@ -11,6 +11,7 @@ use candor::cpu::nearest::{Hit, nearest, occluded};
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sphere::Ray;
 use candor::cpu::{PreparedScene, Search};
+use candor::range::{self, Arithmetic};
 use candor::scene::{Scene, Sphere};
 use candor::viewpoint::Viewpoint;
 use glam::DVec3;
@@ -186,5 +187,17 @@ fn the_rays_tell_a_wrong_tie_rule() {
         };
         let count = rays(&scene, budget(&scene)).iter().filter(|ray| differs(ray)).count();
         assert!(count > 0, "{name}");
+    }
+}
+
+/// What the speed of large scenes is measured on is in range, on devices and here.
+#[test]
+fn the_uniform_volume_is_in_range() {
+    for count in [8, 1000, 100_000] {
+        let scene = volume::scene(count, size(4, 4));
+        let viewpoint = Viewpoint::of(&scene);
+        for arithmetic in [Arithmetic::Single, Arithmetic::Double] {
+            assert_eq!(range::check(&scene, &viewpoint, arithmetic), Ok(()), "{count}");
+        }
     }
 }

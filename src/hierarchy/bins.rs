@@ -5,6 +5,7 @@ use super::build::Item;
 use super::wide::Wide;
 use glam::Vec3A;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Most bins along an axis.
 const BINS: usize = 16;
@@ -14,6 +15,10 @@ const FEWEST: usize = 4;
 
 /// From so many items on, bins are filled on several threads.
 const SHARED: usize = 1 << 16;
+
+/// From so many items on, only the axis along which they reach farthest is looked at: on the
+/// first levels one is as good as another, and all items pass through each of them.
+const ONE_AXIS: usize = 1 << 10;
 
 /// What a visit of a node costs beside the intersection of what is in a leaf.
 const VISIT: f64 = 1.0;
@@ -82,25 +87,27 @@ impl Split {
 
 type Bins = [[Bin; BINS]; 3];
 
-fn fill(items: &[Item], grid: Grid) -> Bins {
+fn fill(items: &[Item], grid: Grid, axes: Range<usize>) -> Bins {
     let mut bins = [[Bin::EMPTY; BINS]; 3];
     for item in items {
-        for (bins, place) in std::iter::zip(&mut bins, grid.places(item)) {
-            bins[place] = bins[place].join(Bin { bounds: item.bounds, count: 1 });
+        let places = grid.places(item);
+        for axis in axes.clone() {
+            let bin = &mut bins[axis][places[axis]];
+            *bin = bin.join(Bin { bounds: item.bounds, count: 1 });
         }
     }
     bins
 }
 
 /// Minima, maxima and counts are the same in whatever order they are taken.
-fn fill_shared(items: &[Item], grid: Grid) -> Bins {
+fn fill_shared(items: &[Item], grid: Grid, axes: Range<usize>) -> Bins {
     if items.len() < SHARED {
-        return fill(items, grid);
+        return fill(items, grid, axes);
     }
     let join = |a: Bins, b: Bins| {
         std::array::from_fn(|axis| std::array::from_fn(|i| a[axis][i].join(b[axis][i])))
     };
-    let parts = items.par_chunks(SHARED / 4).map(|part| fill(part, grid));
+    let parts = items.par_chunks(SHARED / 4).map(|part| fill(part, grid, axes.clone()));
     parts.reduce(|| [[Bin::EMPTY; BINS]; 3], join)
 }
 
@@ -115,8 +122,12 @@ pub(super) fn cheapest(
     let grid = Grid::over(middles, items.len());
     let whole = Bin { bounds, count: items.len() };
     let leaf = if may_be_leaf { whole.cost() } else { f64::INFINITY };
+    let widest = (middles.high - middles.low).max_position();
+    let axes = if items.len() < ONE_AXIS { 0..3 } else { widest..widest + 1 };
+    let bins = fill_shared(items, grid, axes.clone());
     let (mut best, mut least) = (None, leaf);
-    for (axis, bins) in fill_shared(items, grid).iter().enumerate() {
+    for axis in axes {
+        let bins = &bins[axis];
         // What lies behind each place, from the far end on.
         let mut behind = [Bin::EMPTY; BINS];
         for i in (1..grid.bins).rev() {
