@@ -100,7 +100,8 @@ struct Facts {
 impl Facts {
     fn of(scene: &Scene, viewpoint: &Viewpoint) -> Self {
         let all = all_seen(scene, viewpoint);
-        let (diffuse, glossy) = (all.clone().any(Seen::is_diffuse), all.clone().any(Seen::is_glossy));
+        let (diffuse, glossy) =
+            (all.clone().any(Seen::is_diffuse), all.clone().any(Seen::is_glossy));
         let scatters = scene.settings().bounces() > 0;
         let from_here = match scene.settings().estimator() {
             Estimator::Implicit | Estimator::Cosine => false,

@@ -2,6 +2,7 @@
 //! which they fill.
 
 #![allow(dead_code, reason = "each user has some of it")]
+#![allow(clippy::cast_precision_loss, reason = "counts are small")]
 
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::scene::{Albedo, Camera, ImageSize, Radiance, RenderSettings, Scene, Sphere, Surface};

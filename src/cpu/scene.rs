@@ -4,7 +4,7 @@
 
 use super::tree::Tree;
 use crate::scene::{Estimator, Scene, Surface};
-use crate::viewpoint::Viewpoint;
+use crate::viewpoint::{Form, Viewpoint};
 use glam::DVec3;
 
 /// From so many spheres on, a hierarchy finds hits sooner than a loop over all of them.
@@ -92,8 +92,10 @@ impl PreparedScene {
                 .filter(|&i| matches!(spheres[i].surface, Surface::Emitter(_)))
                 .collect(),
             seed: scene.settings().seed(),
-            tree: (search == Search::Hierarchy)
-                .then(|| Tree::over(&spheres, viewpoint.focus(), viewpoint.extent())),
+            tree: (search == Search::Hierarchy).then(|| {
+                let is_huge = |i: usize| viewpoint.forms()[i] == Form::Anchored;
+                Tree::over(&spheres, viewpoint.focus(), |i| spheres[i].inside || is_huge(i))
+            }),
             spheres,
         }
     }

@@ -1,5 +1,5 @@
 //! Which spheres a ray can meet at all: a hierarchy over those seen from outside that are
-//! not larger than the scene.
+//! not huge.
 //!
 //! It loses no hit that the formulas of `sphere.rs` report, wrong ones included. Let E =
 //! k·u·(|f|² + R²), u = 2⁻⁵³, bound the errors of c and of b² − Δ, which are both f² − R² but
@@ -24,7 +24,7 @@ use glam::DVec3;
 
 /// By how much boxes are wider than spheres, of the coordinates that meet there: four times
 /// what the formulas need, and nothing beside the rounding of boxes to `f32`.
-const SLACK: f64 = 1.0 / (1_u64 << 40) as f64;
+const SLACK: f64 = 4096.0 * f64::EPSILON;
 
 /// A sphere in a leaf.
 #[derive(Debug, Clone)]
@@ -47,20 +47,25 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Builds the tree in coordinates around `focus`; spheres larger than `extent` stay outside
-    /// of it, as do those seen from inside, whose far side may be hit.
-    pub(super) fn over(spheres: &[PreparedSphere], focus: DVec3, extent: f64) -> Self {
-        Self::with_boxes(spheres, focus, extent, |sphere| bounds(sphere, focus))
+    /// Builds the tree in coordinates around `focus`. Some spheres stay outside of it: huge
+    /// ones, whose boxes hold most of the others, and those seen from inside, whose far side
+    /// may be hit.
+    pub(super) fn over(
+        spheres: &[PreparedSphere],
+        focus: DVec3,
+        stays_outside: impl Fn(usize) -> bool,
+    ) -> Self {
+        Self::with_boxes(spheres, focus, stays_outside, |sphere| bounds(sphere, focus))
     }
 
     fn with_boxes(
         spheres: &[PreparedSphere],
         focus: DVec3,
-        extent: f64,
+        stays_outside: impl Fn(usize) -> bool,
         bounds: impl Fn(&PreparedSphere) -> Bounds,
     ) -> Self {
-        let is_inside = |&i: &usize| !spheres[i].inside && spheres[i].radius <= extent;
-        let (within, outside): (Vec<usize>, _) = (0..spheres.len()).partition(is_inside);
+        let (outside, within): (Vec<usize>, Vec<usize>) =
+            (0..spheres.len()).partition(|&i| stays_outside(i));
         let bounds: Vec<Bounds> = within.iter().map(|&i| bounds(&spheres[i])).collect();
         let hierarchy = Hierarchy::build(&bounds);
         let member = |&place: &u32| {
@@ -177,22 +182,23 @@ mod tests {
         let spheres = [sphere(-0.25, 1.0), sphere(6.0, 1.0)];
         let ray = Ray { origin: DVec3::new(-5.0, height, 0.0), direction: DVec3::X };
         assert!(entry(factored(&ray, spheres[0].center, 1.0)) < MISS);
-        let tree = Tree::over(&spheres, DVec3::ZERO, 10.0);
+        let tree = Tree::over(&spheres, DVec3::ZERO, |_| false);
         assert_eq!(shown(&tree, height), 1);
         // The judge sees boxes without the slack.
         let tight = |s: &PreparedSphere| Bounds::of_sphere(s.center, s.radius);
-        assert_eq!(shown(&Tree::with_boxes(&spheres, DVec3::ZERO, 10.0, tight), height), 0);
+        let tight = Tree::with_boxes(&spheres, DVec3::ZERO, |_| false, tight);
+        assert_eq!(shown(&tight, height), 0);
     }
 
-    /// The walls of a room and what holds the camera are for the loop.
+    /// Members know their places in the scene, whatever stays outside.
     #[test]
-    fn large_spheres_and_those_around_the_camera_stay_outside() {
-        let mut spheres = [sphere(0.0, 1.0), sphere(0.0, 20.0), sphere(3.0, 1.0), sphere(6.0, 1.0)];
-        spheres[2].inside = true;
-        let tree = Tree::over(&spheres, DVec3::ZERO, 10.0);
+    fn what_stays_outside_is_not_in_the_tree() {
+        let spheres = [0.0, 3.0, 6.0, 9.0].map(|y| sphere(y, 1.0));
+        let tree = Tree::over(&spheres, DVec3::ZERO, |i| i == 1 || i == 2);
         assert_eq!(tree.outside(), [1, 2]);
-        let mut members: Vec<usize> = tree.members.iter().map(|member| member.sphere).collect();
+        let mut members: Vec<(usize, u64)> =
+            tree.members.iter().map(|member| (member.sphere, member.center.y.to_bits())).collect();
         members.sort_unstable();
-        assert_eq!(members, [0, 3]);
+        assert_eq!(members, [(0, 0.0_f64.to_bits()), (3, 9.0_f64.to_bits())]);
     }
 }

@@ -24,8 +24,7 @@ impl Binding {
     }
 }
 
-const READ: wgpu::BufferBindingType =
-    wgpu::BufferBindingType::Storage { read_only: true };
+const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
 pub(super) const WRITTEN: wgpu::BufferBindingType =
     wgpu::BufferBindingType::Storage { read_only: false };
 

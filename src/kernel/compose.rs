@@ -220,7 +220,8 @@ impl Kernel {
 
     /// How a path goes on from there.
     fn scattering(&self, text: &mut Text) {
-        let (diffuse, glossy) = (self.effects.has(Effect::Diffuse), self.effects.has(Effect::Glossy));
+        let (diffuse, glossy) =
+            (self.effects.has(Effect::Diffuse), self.effects.has(Effect::Glossy));
         text.add(fragment!("azimuth")).add(fragment!("sampling")).add(fragment!("material"));
         if diffuse && self.estimator == Estimator::Implicit {
             text.add(fragment!("hemisphere_uniform")).add(fragment!("diffuse_uniform"));

@@ -73,8 +73,8 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     let packed_sphere =
         |&index: &usize| pack_sphere(&spheres[index], index, forms[index], inside[index], &units);
     let is_small = |&index: &usize| forms[index] == Form::Factored && !inside[index];
-    let (small, large): (Vec<usize>, Vec<usize>) = (0..spheres.len())
-        .partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
+    let (small, large): (Vec<usize>, Vec<usize>) =
+        (0..spheres.len()).partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
     let small: Vec<layout::Sphere> = small.iter().map(packed_sphere).collect();
     let boxes: Vec<Bounds> = small.iter().map(bounds).collect();
     let wide = Wide::of(&Hierarchy::build(&boxes));
