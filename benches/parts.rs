@@ -124,7 +124,7 @@ fn paths(c: &mut Criterion) {
     let scene = classic();
     let prepared = PreparedScene::new(&scene);
     let middle = scene.size().pixels() / 2;
-    let key = |i: usize| SampleKey { pixel: middle + i as u32, index: i as u64 };
+    let key = |index: usize| SampleKey { pixel: middle, index: index as u64 };
     measure(c, "path", "camera_ray", |i| camera_ray(&prepared, key(i)));
     let names = ["implicit", "cosine", "explicit", "mis"];
     for name in names {

@@ -91,31 +91,31 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 
 /// Rays from the camera, from surfaces and from anywhere; towards anywhere, towards spheres
 /// and their rims, and along the axes.
-fn rays(scene: &Scene, count: u64) -> Vec<(Ray, Option<usize>)> {
+fn rays(scene: &Scene, count: u32) -> Vec<(Ray, Option<usize>)> {
     let (spheres, focus) = (scene.spheres(), Viewpoint::of(scene).focus());
     let extent = Viewpoint::of(scene).extent();
-    let chosen = |x: f64| (x * spheres.len() as f64) as usize;
-    let ray = |index| {
-        let [from, to, start, aim] = uniform(index, 3);
+    let chosen = |bits: u32| bits as usize % spheres.len();
+    let ray = |index: u32| {
+        let axis = DVec3::AXES[index as usize % 3];
+        let index = u64::from(index);
+        let key = SampleKey { pixel: 2, index };
+        let [from, to, start, aim] = random_bits(key, 3, 11);
         let source = &spheres[chosen(from)];
         let normal = volume::direction(index, 4);
-        let (origin, leaving) = match (4.0 * start) as u32 {
+        let (origin, leaving) = match start % 4 {
             0 => (scene.camera().position(), None),
             1 => (focus + extent * volume::direction(index, 5), None),
-            2 => (
-                source.center() + source.radius() * DVec3::AXES[index as usize % 3],
-                Some(chosen(from)),
-            ),
+            2 => (source.center() + source.radius() * axis, Some(chosen(from))),
             _ => (source.center() + source.radius() * normal, Some(chosen(from))),
         };
         let target = &spheres[chosen(to)];
         let away = target.center() - origin;
         let across = away.cross(volume::direction(index, 6)).normalize_or(DVec3::X);
-        let direction = match (5.0 * aim) as u32 {
+        let direction = match aim % 5 {
             0 => away,
             1 => away + target.radius() * across,
-            2 => DVec3::AXES[index as usize % 3],
-            3 => -DVec3::AXES[index as usize % 3],
+            2 => axis,
+            3 => -axis,
             _ => volume::direction(index, 8),
         };
         (Ray { origin, direction: direction.normalize_or(DVec3::Z) }, leaving)
@@ -124,8 +124,8 @@ fn rays(scene: &Scene, count: u64) -> Vec<(Ray, Option<usize>)> {
 }
 
 /// So few rays where the loop is long.
-fn budget(scene: &Scene) -> u64 {
-    (20_000_000 / scene.spheres().len() as u64).min(40_000)
+fn budget(scene: &Scene) -> u32 {
+    u32::try_from(20_000_000 / scene.spheres().len()).map_or(40_000, |count| count.min(40_000))
 }
 
 fn bits(hit: Option<Hit>) -> Option<(u64, usize)> {
