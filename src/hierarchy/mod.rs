@@ -8,10 +8,12 @@
 mod bins;
 mod bounds;
 mod build;
+mod pairs;
 mod wide;
 
 pub use bounds::Bounds;
 pub use build::{LEAF, MOST_LEVELS};
+pub use pairs::TooManyPairs;
 
 /// One box of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,28 +56,6 @@ impl Hierarchy {
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.order
-    }
-
-    /// Calls `visit` with the index of every box whose leaf a box overlaps or touches: all that
-    /// do so themselves, and others.
-    pub fn visit_overlapping(&self, bounds: &Bounds, mut visit: impl FnMut(u32)) {
-        let mut open = [0; MOST_LEVELS as usize + 1];
-        let mut waiting = usize::from(!self.nodes.is_empty());
-        while waiting > 0 {
-            waiting -= 1;
-            let index: usize = open[waiting];
-            let node = &self.nodes[index];
-            if !node.bounds.overlaps(bounds) {
-                continue;
-            }
-            let first = node.first as usize;
-            if node.count == 0 {
-                (open[waiting], open[waiting + 1]) = (first, index + 1);
-                waiting += 2;
-            } else {
-                self.order[first..first + node.count as usize].iter().for_each(|&i| visit(i));
-            }
-        }
     }
 
     /// Inner nodes above the deepest leaf, at most [`MOST_LEVELS`]: so many places does the

@@ -1,8 +1,9 @@
 //! What of a scene is too small, too near or too nearly the same beside its coordinates.
 
 use super::Arithmetic;
-use super::pairs::{TooManyPairs, first_close_pair};
+use super::pairs::first_close_pair;
 use super::touch::{Coordinates, Touch, touch};
+use crate::hierarchy::TooManyPairs;
 use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::{Viewpoint, corner_angle};
 use glam::DVec3;

@@ -1,18 +1,12 @@
 //! Pairs of spheres that meet or nearly do.
 
-use crate::hierarchy::{Bounds, Hierarchy};
+use crate::hierarchy::{Bounds, Hierarchy, TooManyPairs};
 use crate::scene::Sphere;
 use glam::DVec3;
-use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Most pairs that are looked at, some seconds of work. Only spheres that nearly all overlap
 /// make so many, 16,000 of them.
 const MOST_PAIRS: u64 = 1 << 27;
-
-/// More than [`MOST_PAIRS`] pairs.
-#[derive(Debug)]
-pub(super) struct TooManyPairs;
 
 /// Of all pairs whose boxes are nearer to each other than `margin` of either, the first that
 /// `judge` says something of, and what: first by the smaller sphere's number and then by the
@@ -32,43 +26,19 @@ pub(super) fn first_close_pair<'a, T: Send>(
     };
     let bounds: Vec<Bounds> = spheres.iter().zip(&margins).map(around).collect();
     let tree = Hierarchy::build(&bounds);
-    let seen = AtomicU64::new(0);
-    // In the order of the leaves, so that one search meets what the one before it met.
-    let found = tree.order().par_iter().map(|&i| {
-        let (sphere, mut pairs, mut first) = (&spheres[i as usize], 0, None);
-        if seen.load(Ordering::Relaxed) > MOST_PAIRS {
+    let first = tree.least_of_pairs(MOST_PAIRS, |i, j| {
+        let (i, j) = (i as usize, j as usize);
+        let (a, b) = (&spheres[i], &spheres[j]);
+        let apart = (a.center() - b.center()).abs().max_element();
+        if apart > a.radius() + b.radius() + margins[i].max(margins[j]) {
             return None;
         }
-        tree.visit_overlapping(&bounds[i as usize], |j| {
-            let (other, margin) =
-                (&spheres[j as usize], margins[i as usize].max(margins[j as usize]));
-            let apart = (sphere.center() - other.center()).abs().max_element();
-            if j <= i || apart > sphere.radius() + other.radius() + margin {
-                return;
-            }
-            pairs += 1;
-            let is_smaller = sphere.radius() <= other.radius();
-            let (small, large) = if is_smaller { (sphere, other) } else { (other, sphere) };
-            let key = (small.ordinal(), large.ordinal());
-            if first.as_ref().is_none_or(|&(earlier, _)| key < earlier) {
-                first = judge(small, large).map(|found| (key, found)).or(first.take());
-            }
-        });
-        seen.fetch_add(pairs, Ordering::Relaxed);
-        first
+        let size_and_number = |sphere: &Sphere| (sphere.radius(), sphere.ordinal());
+        let is_ordered = size_and_number(a) <= size_and_number(b);
+        let (small, large) = if is_ordered { (a, b) } else { (b, a) };
+        judge(small, large).map(|found| ((small.ordinal(), large.ordinal()), found))
     });
-    let first = found.reduce(
-        || None,
-        |a, b| match (a, b) {
-            (Some(a), Some(b)) => Some(if a.0 <= b.0 { a } else { b }),
-            (a, b) => a.or(b),
-        },
-    );
-    if seen.into_inner() > MOST_PAIRS {
-        Err(TooManyPairs)
-    } else {
-        Ok(first.map(|(_, found)| found))
-    }
+    Ok(first?.map(|(_, found)| found))
 }
 
 #[cfg(test)]
