@@ -6,7 +6,7 @@
 // Up to four children and their boxes on a grid.
 struct Node {
     origin: vec3<f32>,
-    // Four bits for each child: 0 none, 15 a node, otherwise how many spheres; then the
+    // Four bits for each child: 0 none, 15 a node, otherwise how many spheres, 1 or 2; then the
     // biased exponent of the grid's step.
     kinds: u32,
     // A word for each axis, a byte for each child.
@@ -131,6 +131,12 @@ fn holds_node(way: Way) -> bool {
 
 fn holds_spheres(way: Way) -> bool {
     return way.item != NOTHING && !holds_node(way);
+}
+
+// A leaf's spheres: two, or twice the same one.
+fn pair_of(item: u32) -> vec2<u32> {
+    let first = item >> 4u;
+    return vec2<u32>(first, first + (item & 15u) - 1u);
 }
 
 fn is_done(way: Way) -> bool {
