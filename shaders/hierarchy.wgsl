@@ -139,7 +139,7 @@ fn pair_of(item: u32) -> vec2<u32> {
     return vec2<u32>(first, first + (item & 15u) - 1u);
 }
 
-fn is_done(way: Way) -> bool {
+fn has_ended(way: Way) -> bool {
     return way.item == NOTHING && way.height == 0u && !has_more(way.siblings);
 }
 

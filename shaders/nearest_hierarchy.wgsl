@@ -20,7 +20,7 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
     let climber = climber(ray);
     var best = Hit(MISS, NO_SPHERE);
     var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
-    while !is_done(way) {
+    while !has_ended(way) {
         if holds_spheres(way) {
             best = nearest_of(way.item, best, ray, leaving);
             way.item = NOTHING;
@@ -30,7 +30,7 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
             descend(&way, climber, best.distance);
         }
     }
-    if !is_done(way) {
+    if !has_ended(way) {
         return Hit(MISS, UNFINISHED);
     }
     return best;

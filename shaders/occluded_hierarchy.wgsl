@@ -11,7 +11,7 @@ fn occluded_hierarchy(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool
     let climber = climber(ray);
     var blocked = false;
     var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
-    while !is_done(way) && !blocked {
+    while !has_ended(way) && !blocked {
         if holds_spheres(way) {
             let pair = pair_of(way.item);
             blocked = hides(pair.x, ray, leaving, light, distance)
@@ -23,6 +23,6 @@ fn occluded_hierarchy(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool
             descend(&way, climber, distance);
         }
     }
-    unfinished = unfinished || (!is_done(way) && !blocked);
+    unfinished = unfinished || (!has_ended(way) && !blocked);
     return blocked;
 }
