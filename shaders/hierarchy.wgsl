@@ -25,9 +25,8 @@ struct Climber {
     pad: vec3<f32>,
 }
 
-// Roundings by which a ray may pass a box and still hit a sphere in it, in units of the
-// coordinates: 64u.
-const PAD: f32 = 3.8e-6;
+// By how much of its coordinates a ray may pass a box and still hit a sphere in it: 256u.
+const PAD: f32 = 1.52587890625e-5;
 
 // A direction of zero would give 0·∞.
 const STEEPEST: f32 = 1.0e-20;

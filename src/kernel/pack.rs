@@ -120,10 +120,10 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     }
 }
 
-/// Room in a box around a sphere, in radii. Where a ray starts close to a sphere, the constant
-/// term of its quadratic cancels, and a hit may come out too near by 2√(5u) of a radius
-/// (DESIGN.md, "The hierarchy").
-const ROOM: f64 = 1.0 / 512.0;
+/// Room in a box around a sphere, in radii: hits that rounding finds beside the sphere are no
+/// farther from it, for rays that start within two radii; for others the kernel gives boxes
+/// room by the size of the coordinates (DESIGN.md, "Many spheres").
+const ROOM: f64 = 1.0 / 4096.0;
 
 fn bounds(sphere: &layout::Sphere) -> Bounds {
     let center = DVec3::from(sphere.position.map(f64::from));
