@@ -6,10 +6,10 @@
 mod support {
     #[allow(dead_code, reason = "other tests use the rest")]
     pub mod chi_square;
+    pub mod bare;
     pub mod gpu;
 }
 
-use bytemuck::Zeroable;
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::gpu::probe::{Probe, Row};
@@ -26,7 +26,7 @@ const ROOT: f64 = 9.0 * U;
 
 fn run(entry: &str, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let rows = probe.run(entry, rows, results).expect("the device runs");
     rows.into_iter().map(|row| row.map(f32::from_bits)).collect()
 }

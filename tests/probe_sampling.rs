@@ -12,6 +12,7 @@ mod support {
     pub mod chi_square;
     #[allow(dead_code, reason = "of all formulas, those of the lobe")]
     pub mod closed_form;
+    pub mod bare;
     pub mod gpu;
 }
 
@@ -22,8 +23,9 @@ use candor::cpu::sampling::{around, polar_hemisphere, polar_phong};
 use candor::estimate::z_limit;
 use candor::gpu::Gpu;
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
+use candor::kernel::{Packed, layout};
 use glam::{DVec2, DVec3, Vec3};
+use support::bare::bare;
 use support::chi_square::{EXPONENTS, check_samplers};
 use support::closed_form::{lobe_above_horizon, lobe_albedo};
 
@@ -47,14 +49,12 @@ struct Event {
 /// Exponents of the surfaces; a diffuse one stands first.
 const SURFACES: [f32; 8] = [-1.0, 0.0, 1.0, 100.0, 1e4, 1e6, 1e7, 1e10];
 
-fn surfaces() -> layout::Scene {
-    let mut scene = layout::Scene::zeroed();
-    for (sphere, exponent) in scene.spheres.iter_mut().zip(SURFACES) {
-        let diffuse = exponent < 0.0;
-        sphere.kind = if diffuse { layout::KIND_DIFFUSE } else { layout::KIND_GLOSSY };
-        sphere.exponent = exponent.max(0.0);
-    }
-    scene
+fn surfaces() -> Packed {
+    let surface = |exponent: f32| {
+        let kind = if exponent < 0.0 { layout::KIND_DIFFUSE } else { layout::KIND_GLOSSY };
+        layout::Sphere { kind, exponent: exponent.max(0.0), ..layout::Sphere::zeroed() }
+    };
+    bare(layout::Scene::zeroed(), SURFACES.map(surface).to_vec())
 }
 
 /// The packed sphere with this exponent.

@@ -10,6 +10,7 @@ mod support {
     pub mod chi_square;
     #[allow(dead_code, reason = "each test uses some of the formulas")]
     pub mod closed_form;
+    pub mod bare;
     pub mod gpu;
     pub mod hits;
     #[allow(dead_code, reason = "of the quantities, the channels")]
