@@ -1,13 +1,16 @@
-//! The uniform volume: spheres with centres uniform in a cube, 5 % of which they fill.
+//! The uniform volume: spheres that do not overlap, with centres uniform in a cube, 5 % of
+//! which they fill.
 
 #![allow(dead_code, reason = "each user has some of it")]
+#![allow(clippy::cast_precision_loss, reason = "counts are small")]
 
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::scene::{Albedo, Camera, ImageSize, Radiance, RenderSettings, Scene, Sphere, Surface};
-use glam::DVec3;
+use glam::{DVec3, IVec3};
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
-/// Share of the cube's volume that `count` spheres have together, overlaps counted twice.
+/// Share of the cube's volume that the spheres have together.
 const FILLED: f64 = 0.05;
 
 /// Radius of each of `count` spheres in the cube [-1, 1]³.
@@ -15,14 +18,28 @@ pub fn radius(count: usize) -> f64 {
     (FILLED * 8.0 / (count as f64 * 4.0 / 3.0 * PI)).cbrt()
 }
 
-/// Centres uniform in the cube [-1, 1]³, to 32 bits.
+/// Centres uniform in the cube [-1, 1]³, to 32 bits, without those whose sphere would overlap
+/// an earlier one: what hardly shows of a sphere is out of the declared range.
 pub fn centers(count: usize) -> Vec<DVec3> {
     let coordinate = |bits: u32| f64::from(bits) * (2.0 / f64::from(u32::MAX)) - 1.0;
     let center = |index| {
         let [x, y, z, _] = random_bits(SampleKey { pixel: 0, index }, 0, 5);
         DVec3::new(coordinate(x), coordinate(y), coordinate(z))
     };
-    (0..count as u64).map(center).collect()
+    // Cells of one radius hold one centre each; two radii reach two cells far.
+    let (least, mut cells) = (2.0 * radius(count), HashMap::with_capacity(count));
+    let around = || (0..125).map(|i| IVec3::new(i % 5, i / 5 % 5, i / 25) - 2);
+    let stays = |center: &DVec3| {
+        let cell = (center / radius(count)).floor().as_ivec3();
+        let is_free = around()
+            .filter_map(|offset| cells.get(&(cell + offset)))
+            .all(|other: &DVec3| other.distance(*center) > least);
+        if is_free {
+            cells.insert(cell, *center);
+        }
+        is_free
+    };
+    (0..).map(center).filter(stays).take(count).collect()
 }
 
 /// A direction uniform on the sphere, from numbers of their own.

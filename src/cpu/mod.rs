@@ -8,7 +8,7 @@ mod connected;
 mod interior;
 mod light;
 pub mod material;
-mod nearest;
+pub mod nearest;
 mod pick;
 mod replay;
 pub mod rng;
@@ -16,12 +16,13 @@ pub mod sampling;
 mod scene;
 pub mod sphere;
 mod trace;
+mod tree;
 mod walk;
 
 pub use replay::replay;
 pub use rng::SampleKey;
-pub use scene::PreparedScene;
-pub use trace::trace;
+pub use scene::{PreparedScene, Search};
+pub use trace::{camera_ray, trace};
 
 use crate::bound::sample_scale;
 use crate::film::{Film, PixelSums, PixelWords, SampleScale};
@@ -55,7 +56,7 @@ impl CpuTracer {
             .build()
             .map_err(|error| TraceError::Device(format!("cannot start the threads: {error}")))?;
         Ok(Self {
-            scene: PreparedScene::new(scene),
+            scene: pool.install(|| PreparedScene::new(scene)),
             film: Film::new(scene.size(), sample_scale(scene)),
             ledger: Ledger::default(),
             pool,

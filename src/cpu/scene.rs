@@ -2,11 +2,32 @@
 //! for laid out for it. It shares no packing with the kernel, so that a mistake in
 //! `src/kernel` cannot hide in both.
 
+use super::tree::Tree;
 use crate::effects::{Effect, Effects};
 use crate::light_tree::{LightTree, places};
 use crate::scene::{Estimator, Scene, Surface};
-use crate::viewpoint::Viewpoint;
+use crate::viewpoint::{Form, Viewpoint};
 use glam::DVec3;
+
+/// From so many spheres on, a hierarchy finds hits sooner than a loop over all of them.
+const HIERARCHY_FROM: usize = 16;
+
+/// How hits are found. Both ways find the same ones, to the bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Search {
+    /// In a loop over all spheres.
+    Loop,
+    /// In a hierarchy of boxes.
+    Hierarchy,
+}
+
+impl Search {
+    /// The faster way for a scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        if scene.spheres().len() < HIERARCHY_FROM { Self::Loop } else { Self::Hierarchy }
+    }
+}
 
 /// A scene ready to be traced.
 #[derive(Debug, Clone)]
@@ -21,6 +42,8 @@ pub struct PreparedScene {
     pub(super) lights: Vec<usize>,
     /// A tree over them, where there are too many to scan.
     pub(super) light_tree: Option<LightTree>,
+    /// None where hits are found in a loop.
+    pub(super) tree: Option<Tree>,
 }
 
 /// The camera: `right` and `up` reach from the picture's centre to its edges on the
@@ -46,11 +69,25 @@ pub(super) struct PreparedSphere {
 }
 
 impl PreparedScene {
-    /// Prepares a scene.
+    /// Prepares a scene; of many spheres on the threads of the pool that it is called in.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
+        Self::searched(scene, Search::of(scene))
+    }
+
+    /// Prepares a scene, with a way to find hits.
+    #[must_use]
+    pub fn searched(scene: &Scene, search: Search) -> Self {
         let viewpoint = Viewpoint::of(scene);
         let sides = scene.spheres().iter().zip(viewpoint.inside());
+        let spheres: Vec<PreparedSphere> = sides
+            .map(|(sphere, &inside)| PreparedSphere {
+                center: sphere.center(),
+                radius: sphere.radius(),
+                inside,
+                surface: sphere.surface(),
+            })
+            .collect();
         Self {
             camera: Pinhole::of(scene),
             bounces: scene.settings().bounces(),
@@ -60,14 +97,11 @@ impl PreparedScene {
                 .has(Effect::LightTree)
                 .then(|| LightTree::of(scene, &viewpoint)),
             seed: scene.settings().seed(),
-            spheres: sides
-                .map(|(sphere, &inside)| PreparedSphere {
-                    center: sphere.center(),
-                    radius: sphere.radius(),
-                    inside,
-                    surface: sphere.surface(),
-                })
-                .collect(),
+            tree: (search == Search::Hierarchy).then(|| {
+                let is_huge = |i: usize| viewpoint.forms()[i] == Form::Anchored;
+                Tree::over(&spheres, viewpoint.focus(), |i| spheres[i].inside || is_huge(i))
+            }),
+            spheres,
         }
     }
 }

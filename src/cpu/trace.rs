@@ -5,7 +5,7 @@ use super::interior::facing_normal;
 use super::material::{Scattering, scatter_cosine, scatter_diffuse, scatter_glossy};
 use super::nearest::Hit;
 use super::rng::{SampleKey, random_bits, unit_floats};
-use super::scene::{Pinhole, PreparedScene, PreparedSphere};
+use super::scene::{PreparedScene, PreparedSphere};
 use super::sphere::Ray;
 use super::{blind, connected};
 use crate::scene::{Albedo, Estimator, Surface};
@@ -50,8 +50,11 @@ pub(super) fn scatter(
     }
 }
 
-/// The ray through a point of the pixel drawn uniformly (box filter).
-fn camera_ray(camera: &Pinhole, pixel: u32, u: DVec2) -> Ray {
+/// The ray of a sample, through a point of its pixel drawn uniformly (box filter).
+#[must_use]
+pub fn camera_ray(scene: &PreparedScene, key: SampleKey) -> Ray {
+    let (camera, pixel) = (&scene.camera, key.pixel);
+    let u = unit_floats(random_bits(key, 0, scene.seed));
     let (column, row) = (pixel % camera.width, pixel / camera.width);
     let x = 2.0 * (f64::from(column) + u.x) / f64::from(camera.width) - 1.0;
     let y = 1.0 - 2.0 * (f64::from(row) + u.y) / f64::from(camera.height);
@@ -84,8 +87,7 @@ pub(super) struct Path {
 impl Path {
     /// The path of a sample, at the camera.
     pub(super) fn start(scene: &PreparedScene, key: SampleKey) -> Self {
-        let u = unit_floats(random_bits(key, 0, scene.seed));
-        let ray = camera_ray(&scene.camera, key.pixel, u);
+        let ray = camera_ray(scene, key);
         let eye = SurfacePoint { position: ray.origin, normal: ray.direction };
         Self {
             ray,

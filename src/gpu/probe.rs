@@ -2,8 +2,8 @@
 
 use super::bands::read_buffer;
 use super::device::Gpu;
-use crate::film::{PixelWords, WORDS};
 use super::scene::SceneBuffers;
+use crate::film::{PixelWords, WORDS};
 use crate::kernel::{Packed, probe_source, validate};
 use crate::tracer::TraceError;
 use wgpu::util::DeviceExt;
@@ -34,11 +34,7 @@ impl<'gpu> Probe<'gpu> {
     ///
     /// # Errors
     /// If the device refuses the text.
-    pub fn with_source(
-        gpu: &'gpu Gpu,
-        scene: &Packed,
-        wgsl: String,
-    ) -> Result<Self, TraceError> {
+    pub fn with_source(gpu: &'gpu Gpu, scene: &Packed, wgsl: String) -> Result<Self, TraceError> {
         let module = gpu.device().create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("probe"),
             source: wgpu::ShaderSource::Wgsl(wgsl.as_str().into()),

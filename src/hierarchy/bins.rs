@@ -1,16 +1,24 @@
 //! The surface-area heuristic over bins (Wald, "On fast Construction of SAH-based Bounding
 //! Volume Hierarchies", IEEE Symposium on Interactive Ray Tracing, 2007).
 
-use super::bounds::Bounds;
 use super::build::Item;
-use glam::Vec3;
+use super::wide::Wide;
+use glam::Vec3A;
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Places along an axis at which a node may be split, and one more.
+/// Most bins along an axis.
 const BINS: usize = 16;
+
+/// Fewest: a node of few items has no use for more bins than items.
+const FEWEST: usize = 4;
 
 /// From so many items on, bins are filled on several threads.
 const SHARED: usize = 1 << 16;
+
+/// From so many items on, only the axis along which they reach farthest is looked at: on the
+/// first levels one is as good as another, and all items pass through each of them.
+const ONE_AXIS: usize = 1 << 10;
 
 /// What a visit of a node costs beside the intersection of what is in a leaf.
 const VISIT: f64 = 1.0;
@@ -18,12 +26,12 @@ const VISIT: f64 = 1.0;
 /// What lies in one bin.
 #[derive(Debug, Clone, Copy)]
 struct Bin {
-    bounds: Bounds,
+    bounds: Wide,
     count: usize,
 }
 
 impl Bin {
-    const EMPTY: Self = Self { bounds: Bounds::EMPTY, count: 0 };
+    const EMPTY: Self = Self { bounds: Wide::EMPTY, count: 0 };
 
     fn join(self, other: Self) -> Self {
         Self { bounds: self.bounds.join(other.bounds), count: self.count + other.count }
@@ -39,16 +47,18 @@ impl Bin {
 /// How places become bins: those between the lowest and the highest middle of the items.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid {
-    low: Vec3,
-    scale: Vec3,
+    low: Vec3A,
+    scale: Vec3A,
+    bins: usize,
 }
 
 impl Grid {
-    /// The grid over a box of (twice the) middles.
-    pub(super) fn over(middles: Bounds) -> Self {
+    /// The grid over the box of (twice the) middles of some items.
+    fn over(middles: Wide, items: usize) -> Self {
+        let bins = items.clamp(FEWEST, BINS);
         #[expect(clippy::cast_precision_loss, reason = "a few bins")]
-        let scale = BINS as f32 * (middles.high - middles.low).recip();
-        Self { low: middles.low, scale }
+        let scale = bins as f32 * (middles.high - middles.low).recip();
+        Self { low: middles.low, scale, bins }
     }
 
     /// The bin of an item along each axis. An axis along which all middles are the same has
@@ -56,7 +66,7 @@ impl Grid {
     fn places(&self, item: &Item) -> [usize; 3] {
         let place = (item.bounds.twice_middle() - self.low) * self.scale;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        place.to_array().map(|at| (at as usize).min(BINS - 1))
+        place.to_array().map(|at| (at as usize).min(self.bins - 1))
     }
 }
 
@@ -77,25 +87,27 @@ impl Split {
 
 type Bins = [[Bin; BINS]; 3];
 
-fn fill(items: &[Item], grid: Grid) -> Bins {
+fn fill(items: &[Item], grid: Grid, axes: Range<usize>) -> Bins {
     let mut bins = [[Bin::EMPTY; BINS]; 3];
     for item in items {
-        for (bins, place) in std::iter::zip(&mut bins, grid.places(item)) {
-            bins[place] = bins[place].join(Bin { bounds: item.bounds, count: 1 });
+        let places = grid.places(item);
+        for axis in axes.clone() {
+            let bin = &mut bins[axis][places[axis]];
+            *bin = bin.join(Bin { bounds: item.bounds, count: 1 });
         }
     }
     bins
 }
 
 /// Minima, maxima and counts are the same in whatever order they are taken.
-fn fill_shared(items: &[Item], grid: Grid) -> Bins {
+fn fill_shared(items: &[Item], grid: Grid, axes: Range<usize>) -> Bins {
     if items.len() < SHARED {
-        return fill(items, grid);
+        return fill(items, grid, axes);
     }
     let join = |a: Bins, b: Bins| {
         std::array::from_fn(|axis| std::array::from_fn(|i| a[axis][i].join(b[axis][i])))
     };
-    let parts = items.par_chunks(SHARED / 4).map(|part| fill(part, grid));
+    let parts = items.par_chunks(SHARED / 4).map(|part| fill(part, grid, axes.clone()));
     parts.reduce(|| [[Bin::EMPTY; BINS]; 3], join)
 }
 
@@ -103,22 +115,26 @@ fn fill_shared(items: &[Item], grid: Grid) -> Bins {
 /// and `may_be_leaf`; nothing also where all their middles are in one bin.
 pub(super) fn cheapest(
     items: &[Item],
-    bounds: Bounds,
-    middles: Bounds,
+    bounds: Wide,
+    middles: Wide,
     may_be_leaf: bool,
 ) -> Option<Split> {
-    let grid = Grid::over(middles);
+    let grid = Grid::over(middles, items.len());
     let whole = Bin { bounds, count: items.len() };
     let leaf = if may_be_leaf { whole.cost() } else { f64::INFINITY };
+    let widest = (middles.high - middles.low).max_position();
+    let axes = if items.len() < ONE_AXIS { 0..3 } else { widest..widest + 1 };
+    let bins = fill_shared(items, grid, axes.clone());
     let (mut best, mut least) = (None, leaf);
-    for (axis, bins) in fill_shared(items, grid).iter().enumerate() {
+    for axis in axes {
+        let bins = &bins[axis];
         // What lies behind each place, from the far end on.
         let mut behind = [Bin::EMPTY; BINS];
-        for i in (1..BINS).rev() {
+        for i in (1..grid.bins).rev() {
             behind[i - 1] = behind[i].join(bins[i]);
         }
         let mut before = Bin::EMPTY;
-        for (last, behind) in behind.iter().enumerate().take(BINS - 1) {
+        for (last, behind) in behind.iter().enumerate().take(grid.bins - 1) {
             before = before.join(bins[last]);
             if before.count == 0 || behind.count == 0 {
                 continue;

@@ -12,10 +12,6 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Holds nothing, and joined with any box leaves that.
-    pub(super) const EMPTY: Self =
-        Self { low: Vec3::splat(f32::INFINITY), high: Vec3::splat(f32::NEG_INFINITY) };
-
     /// The smallest box around a sphere of finite centre and radius: rounded outwards, so
     /// that it holds every point of it.
     #[must_use]
@@ -32,16 +28,10 @@ impl Bounds {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Half of the surface's area, in `f64`, where no scene's lengths overflow; nothing for
-    /// a box that holds nothing.
-    pub(super) fn half_area(self) -> f64 {
-        let sides = (self.high.as_dvec3() - self.low.as_dvec3()).max(DVec3::ZERO);
-        sides.x * sides.y + sides.y * sides.z + sides.z * sides.x
-    }
-
-    /// Twice the middle, which is as good for comparisons and needs no rounding rule.
-    pub(super) fn twice_middle(self) -> Vec3 {
-        self.low + self.high
+    /// Whether the two have a point in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.low.cmple(other.high).all() && other.low.cmple(self.high).all()
     }
 }
 

@@ -3,7 +3,8 @@
 use super::Node;
 use super::bins::cheapest;
 use super::bounds::Bounds;
-use glam::Vec3;
+use super::wide::Wide;
+use glam::Vec3A;
 
 /// Most things in one leaf.
 pub const LEAF: usize = 4;
@@ -22,14 +23,14 @@ const ALONE: usize = 1 << 12;
 /// A box and whose it is.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Item {
-    pub(super) bounds: Bounds,
+    pub(super) bounds: Wide,
     index: u32,
 }
 
 /// The nodes, depth first, and the order of the items in their leaves.
 pub(super) fn build(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
     assert!(bounds.len() < 1 << 31, "2³¹ boxes or more");
-    let item = |(index, &bounds): (u32, &Bounds)| Item { bounds, index };
+    let item = |(index, &bounds): (u32, &Bounds)| Item { bounds: bounds.into(), index };
     let mut items: Vec<Item> = std::iter::zip(0.., bounds).map(item).collect();
     let mut nodes = Vec::new();
     if !items.is_empty() {
@@ -43,13 +44,13 @@ pub(super) fn build(bounds: &[Bounds]) -> (Vec<Node>, Vec<u32>) {
 fn grow(items: &mut [Item], first: usize, above: u32, nodes: &mut Vec<Node>) {
     let (bounds, middles) = around(items);
     let Some(before) = split(items, bounds, middles, above) else {
-        nodes.push(Node { bounds, count: word(items.len()), first: word(first) });
+        nodes.push(Node { bounds: bounds.into(), count: word(items.len()), first: word(first) });
         return;
     };
     let is_shared = items.len() >= ALONE;
     let (left, right) = items.split_at_mut(before);
     let place = nodes.len();
-    nodes.push(Node { bounds, count: 0, first: 0 });
+    nodes.push(Node { bounds: bounds.into(), count: 0, first: 0 });
     if is_shared {
         let (mut of_left, mut of_right) = (Vec::new(), Vec::new());
         rayon::join(
@@ -76,16 +77,15 @@ fn append(nodes: &mut Vec<Node>, subtree: &[Node]) {
 }
 
 /// The box around some items, and that of (twice) their middles.
-fn around(items: &[Item]) -> (Bounds, Bounds) {
-    items.iter().fold((Bounds::EMPTY, Bounds::EMPTY), |(bounds, middles), item| {
-        let middle = item.bounds.twice_middle();
-        (bounds.join(item.bounds), middles.join(Bounds { low: middle, high: middle }))
+fn around(items: &[Item]) -> (Wide, Wide) {
+    items.iter().fold((Wide::EMPTY, Wide::EMPTY), |(bounds, middles), item| {
+        (bounds.join(item.bounds), middles.with(item.bounds.twice_middle()))
     })
 }
 
 /// Sorts items into those of the first and of the second child; how many the first gets,
 /// nothing if they are to be a leaf.
-fn split(items: &mut [Item], bounds: Bounds, middles: Bounds, above: u32) -> Option<usize> {
+fn split(items: &mut [Item], bounds: Wide, middles: Wide, above: u32) -> Option<usize> {
     let count = items.len();
     let may_be_leaf = count <= LEAF;
     if count == 1 {
@@ -123,7 +123,7 @@ fn partition(items: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
 }
 
 /// Puts the half with the smaller middles along the widest axis first.
-fn halve(items: &mut [Item], widths: Vec3) {
+fn halve(items: &mut [Item], widths: Vec3A) {
     let axis = widths.max_position();
     let key = |item: &Item| item.bounds.twice_middle()[axis];
     items.select_nth_unstable_by(items.len() / 2, |a, b| {

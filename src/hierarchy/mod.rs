@@ -8,9 +8,12 @@
 mod bins;
 mod bounds;
 mod build;
+mod pairs;
+mod wide;
 
 pub use bounds::Bounds;
 pub use build::{LEAF, MOST_LEVELS};
+pub use pairs::TooManyPairs;
 
 /// One box of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,9 @@
 //! What of a scene is too small, too near or too nearly the same beside its coordinates.
 
 use super::Arithmetic;
-use super::pairs::{TooManyPairs, visit_close_pairs};
+use super::pairs::first_close_pair;
 use super::touch::{Coordinates, Touch, touch};
+use crate::hierarchy::TooManyPairs;
 use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::{Viewpoint, corner_angle};
 use glam::DVec3;
@@ -56,7 +57,7 @@ pub(super) struct Judge<'a> {
     scene: &'a Scene,
     viewpoint: &'a Viewpoint,
     arithmetic: Arithmetic,
-    /// Numbers of the spheres that hold the camera.
+    /// Numbers of the spheres that hold the camera, ascending.
     inside: Vec<usize>,
     /// How far from the focus rays may start: the extent, where those of the camera do, or the
     /// far side of the smallest wall around it.
@@ -105,16 +106,9 @@ impl<'a> Judge<'a> {
     fn first_pair(&self) -> Option<Fault<'a>> {
         // Where two meet, neither's reach is more than some three times the other's.
         let margin = |sphere: &Sphere| 8.0 * self.share(FINEST) * self.reach(sphere);
-        let mut first: Option<(usize, Fault<'a>)> = None;
-        let visited = visit_close_pairs(self.scene.spheres(), margin, |a, b| {
-            let (small, large) = if a.radius() <= b.radius() { (a, b) } else { (b, a) };
-            let is_first = first.as_ref().is_none_or(|&(ordinal, _)| small.ordinal() < ordinal);
-            if let Some(fault) = is_first.then(|| self.judge_pair(small, large)).flatten() {
-                first = Some((small.ordinal(), fault));
-            }
-        });
-        match visited {
-            Ok(()) => first.map(|(_, fault)| fault),
+        let judge = |small, large| self.judge_pair(small, large);
+        match first_close_pair(self.scene.spheres(), self.viewpoint.focus(), margin, judge) {
+            Ok(first) => first,
             Err(TooManyPairs) => {
                 self.scene.spheres().first().map(|sphere| Fault::Crowded { sphere })
             }
@@ -123,7 +117,7 @@ impl<'a> Judge<'a> {
 
     /// Two spheres that touch, overlap or nearly do.
     fn judge_pair(&self, small: &'a Sphere, large: &'a Sphere) -> Option<Fault<'a>> {
-        let inside = [small, large].map(|sphere| self.inside.contains(&sphere.ordinal()));
+        let inside = [small, large].map(|sphere| self.is_inside(sphere));
         match touch(small, large, inside, self)? {
             Touch::Close(limit) => Some(Fault::Close { small, large, limit }),
             Touch::Hidden(limit) => Some(Fault::Hidden { small, large, limit }),
@@ -164,14 +158,17 @@ impl<'a> Judge<'a> {
         Some(Fault::Near { sphere, height, limit })
     }
 
+    fn is_inside(&self, sphere: &Sphere) -> bool {
+        self.inside.binary_search(&sphere.ordinal()).is_ok()
+    }
+
     /// Whether the camera is outside of the sphere and its rim crosses the picture.
     fn shows_rim(&self, sphere: &Sphere) -> bool {
         let camera = self.scene.camera();
         let to_center = sphere.center() - camera.position();
         let off_axis = to_center.angle_between(camera.forward());
         let rim = (sphere.radius() / to_center.length()).min(1.0).asin();
-        let outside = !self.inside.contains(&sphere.ordinal());
-        outside && (off_axis - rim).abs() <= corner_angle(self.scene)
+        !self.is_inside(sphere) && (off_axis - rim).abs() <= corner_angle(self.scene)
     }
 
     /// A picture narrower than the finest detail would show what is beside it.
