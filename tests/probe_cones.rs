@@ -4,16 +4,15 @@
 #![expect(clippy::cast_possible_truncation, reason = "the device computes in f32")]
 
 mod support {
+    pub mod bare;
     #[allow(dead_code, reason = "other tests use the rest")]
     pub mod chi_square;
-    pub mod bare;
     pub mod gpu;
 }
 
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 use glam::{DVec2, DVec3, Vec3};
 use support::chi_square::{hemisphere_p_value, lobe_p_value, p_limit};
 

@@ -12,7 +12,6 @@ mod support {
 
 use candor::cpu::sphere::{MISS, Ray, anchored, entry, exit, factored};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 use glam::{DVec3, Vec3};
 use support::hits::{Case, Plan, Side, U, plans, tangents};
 

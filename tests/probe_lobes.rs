@@ -38,8 +38,10 @@ const LAST_EXPONENT: f64 = 80.0;
 const EXPONENTS: [f32; 8] = [0.0, 1.0, 7.5, 100.0, 1e4, 1e6, 1e8, 1e10];
 
 fn run(entry: &str, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
-    let glossy = |exponent| {
-        layout::Sphere { kind: layout::KIND_GLOSSY, exponent, ..layout::Sphere::zeroed() }
+    let glossy = |exponent| layout::Sphere {
+        kind: layout::KIND_GLOSSY,
+        exponent,
+        ..layout::Sphere::zeroed()
     };
     let scene = bare(layout::Scene::zeroed(), EXPONENTS.map(glossy).to_vec());
     let gpu = support::gpu::open();

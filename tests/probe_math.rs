@@ -15,7 +15,6 @@ mod support {
 }
 
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

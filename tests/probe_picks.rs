@@ -9,8 +9,8 @@ mod support {
     pub mod scenes;
 }
 
-use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::bound::sample_scale;
+use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::effects::{Effect, Effects};
 use candor::gpu::probe::{Probe, Row};

@@ -7,7 +7,6 @@ mod support {
 
 use candor::cpu::rng::{pcg4d, unit_float};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 
 /// The reference of Jarzynski & Olano once more, in 64-bit arithmetic modulo 2³².
 fn pcg4d_in_u64(key: Row) -> Row {

@@ -8,11 +8,11 @@
 )]
 
 mod support {
+    pub mod bare;
     #[allow(dead_code, reason = "the twin's test rejects its faults")]
     pub mod chi_square;
     #[allow(dead_code, reason = "of all formulas, those of the lobe")]
     pub mod closed_form;
-    pub mod bare;
     pub mod gpu;
 }
 

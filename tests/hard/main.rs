@@ -6,11 +6,11 @@ mod rows;
 mod scenes;
 #[path = "../support"]
 mod support {
+    pub mod bare;
     #[allow(dead_code, reason = "of all samplers, the lobe")]
     pub mod chi_square;
     #[allow(dead_code, reason = "each test uses some of the formulas")]
     pub mod closed_form;
-    pub mod bare;
     pub mod gpu;
     pub mod hits;
     #[allow(dead_code, reason = "of the quantities, the channels")]
