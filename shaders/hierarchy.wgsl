@@ -133,7 +133,7 @@ fn holds_spheres(way: Way) -> bool {
     return way.item != NOTHING && !holds_node(way);
 }
 
-fn is_done(way: Way) -> bool {
+fn is_at_end(way: Way) -> bool {
     return way.item == NOTHING && way.height == 0u && !has_more(way.siblings);
 }
 

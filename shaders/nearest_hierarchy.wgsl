@@ -26,7 +26,7 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
     let climber = climber(ray);
     var best = Hit(MISS, NO_SPHERE);
     var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
-    while !is_done(way) && best.sphere != UNFINISHED {
+    while !is_at_end(way) && best.sphere != UNFINISHED {
         if holds_spheres(way) {
             best = nearest_of(way.item, best, ray, leaving);
             way.item = NOTHING;
@@ -36,7 +36,7 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
             descend(&way, climber, best.distance);
         }
     }
-    if !is_done(way) {
+    if !is_at_end(way) {
         return Hit(MISS, UNFINISHED);
     }
     return best;

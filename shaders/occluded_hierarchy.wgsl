@@ -19,7 +19,7 @@ fn occluded_hierarchy(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool
     let climber = climber(ray);
     var blocked = false;
     var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
-    while !is_done(way) && !blocked {
+    while !is_at_end(way) && !blocked {
         if holds_spheres(way) {
             blocked = occluded_by(way.item, ray, leaving, light, distance);
             way.item = NOTHING;
@@ -29,6 +29,6 @@ fn occluded_hierarchy(ray: Ray, leaving: u32, light: u32, distance: f32) -> bool
             descend(&way, climber, distance);
         }
     }
-    unfinished = unfinished || (!is_done(way) && !blocked);
+    unfinished = unfinished || (!is_at_end(way) && !blocked);
     return blocked;
 }
