@@ -175,11 +175,14 @@ fn a_wrong_layout_is_rejected() {
     // One row per struct: fields in another order, or of another type.
     let faults = [
         ("Sphere", "index: u32,\n    kind: u32,", "kind: u32,\n    index: u32,"),
-        ("Scene", "    hierarchy_count: u32,\n", ""),
+        (
+            "Scene",
+            "approach: f32,\n    hierarchy_count: u32,",
+            "hierarchy_count: u32,\n    approach: f32,",
+        ),
         ("Scene", "origin: vec3<f32>,\n    seed: u32,", "seed: u32,\n    origin: vec3<f32>,"),
-        ("Node", "low: vec3<u32>", "low: vec2<u32>"),
-        ("Node", "first_sphere: u32,", "first_sphere: array<u32, 2>,"),
-        ("LightNode", "    brightness: f32,\n", ""),
+        ("Node", "low: vec3<u32>,\n    first_node: u32,", "first_node: u32,\n    low: vec3<u32>,"),
+        ("LightNode", "    brightness: f32,", "    more: u32,\n    brightness: f32,"),
         ("Dispatch", "row_start: u32,\n    row_end: u32,", "row_end: u32,\n    row_start: u32,"),
         ("Ledger", "array<u32, LEDGER_RECORDS * RECORD_WORDS>", "array<u32, 129>"),
     ];

@@ -14,6 +14,7 @@ mod support {
     #[allow(dead_code, reason = "of all formulas, those of the lobe")]
     pub mod closed_form;
     pub mod gpu;
+    pub mod uniform_probe;
 }
 
 use bytemuck::Zeroable;
@@ -28,6 +29,7 @@ use glam::{DVec2, DVec3, Vec3};
 use support::bare::bare;
 use support::chi_square::{EXPONENTS, check_samplers};
 use support::closed_form::{lobe_above_horizon, lobe_albedo};
+use support::uniform_probe::uniform_probe;
 
 const U: f64 = 1.0 / (1 << 24) as f64;
 
@@ -73,7 +75,8 @@ impl Device {
     }
 
     fn run(&self, entry: &str, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
-        let probe = Probe::new(&self.gpu, &surfaces()).expect("the probe compiles");
+        let probe = Probe::with_source(&self.gpu, &surfaces(), uniform_probe())
+            .expect("the probe compiles");
         let rows = probe.run(entry, rows, results).expect("the device runs");
         rows.into_iter().map(|row| row.map(f32::from_bits)).collect()
     }

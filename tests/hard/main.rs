@@ -18,6 +18,7 @@ mod support {
     pub mod rays;
     pub mod scenes;
     pub mod tracers;
+    pub mod uniform_probe;
 }
 
 /// The cases are numbered from 1 to this.

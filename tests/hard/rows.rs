@@ -6,6 +6,7 @@ use crate::support::gpu;
 use crate::support::hits::{Case, Side};
 use crate::support::rays::{Ray, draw, on_sphere, trace};
 use crate::support::scenes::{diffuse, emitter, packed, seen, size, sphere};
+use crate::support::uniform_probe::uniform_probe;
 use crate::{Line, Verdict};
 use bytemuck::Zeroable;
 use candor::gpu::probe::{Probe, Row};
@@ -20,7 +21,7 @@ const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
 fn run(entry: &str, scene: &Packed, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
     let gpu = gpu::open();
-    let probe = Probe::new(&gpu, scene).expect("the probe compiles");
+    let probe = Probe::with_source(&gpu, scene, uniform_probe()).expect("the probe compiles");
     let rows = probe.run(entry, rows, results).expect("the device runs");
     rows.into_iter().map(|row| row.map(f32::from_bits)).collect()
 }
