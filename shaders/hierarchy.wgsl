@@ -6,7 +6,7 @@
 // Up to four children and their boxes on a grid.
 struct Node {
     origin: vec3<f32>,
-    // Four bits for each child: 0 none, 15 a node, otherwise how many spheres; then the
+    // Four bits for each child: 0 none, 15 a node, otherwise how many spheres, 1 or 2; then the
     // biased exponent of the grid's step.
     kinds: u32,
     // A word for each axis, a byte for each child.
@@ -25,9 +25,8 @@ struct Climber {
     pad: vec3<f32>,
 }
 
-// Roundings by which a ray may pass a box and still hit a sphere in it, in units of the
-// coordinates: 64u.
-const PAD: f32 = 3.8e-6;
+// By how much of its coordinates a ray may pass a box and still hit a sphere in it: 256u.
+const PAD: f32 = 1.52587890625e-5;
 
 // A direction of zero would give 0·∞.
 const STEEPEST: f32 = 1.0e-20;
@@ -133,7 +132,13 @@ fn holds_spheres(way: Way) -> bool {
     return way.item != NOTHING && !holds_node(way);
 }
 
-fn is_at_end(way: Way) -> bool {
+// A leaf's spheres: two, or twice the same one.
+fn pair_of(item: u32) -> vec2<u32> {
+    let first = item >> 4u;
+    return vec2<u32>(first, first + (item & 15u) - 1u);
+}
+
+fn has_ended(way: Way) -> bool {
     return way.item == NOTHING && way.height == 0u && !has_more(way.siblings);
 }
 

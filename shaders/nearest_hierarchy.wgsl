@@ -1,20 +1,14 @@
 // The nearest of the spheres under the hierarchy.
 
-// Some spheres and the nearest hit so far. The spheres of a leaf keep the order of the scene
-// file; between leaves it is asked for at equal distances.
+// The nearer of a leaf's spheres, which keep the order of the scene file, if it is nearer than
+// the best so far; between leaves that order is asked for at equal distances.
 fn nearest_of(item: u32, best: Hit, ray: Ray, leaving: u32) -> Hit {
-    var here = Hit(MISS, NO_SPHERE);
-    let end = (item >> 4u) + (item & 15u);
-    var i = item >> 4u;
-    for (; i < end; i++) {
-        let q = factored(ray, spheres[i].position, spheres[i].size);
-        let t = select(entry(q), MISS, i == leaving);
-        let is_closer = t < here.distance;
-        here = Hit(select(here.distance, t, is_closer), select(here.sphere, i, is_closer));
-    }
-    if i != end {
-        return Hit(MISS, UNFINISHED);
-    }
+    let pair = pair_of(item);
+    let a = factored(ray, spheres[pair.x].position, spheres[pair.x].size);
+    let b = factored(ray, spheres[pair.y].position, spheres[pair.y].size);
+    let t = vec2<f32>(
+        select(entry(a), MISS, pair.x == leaving), select(entry(b), MISS, pair.y == leaving));
+    let here = Hit(min(t.x, t.y), select(pair.x, pair.y, t.y < t.x));
     if here.distance < best.distance || (here.distance == best.distance && here.distance < MISS
         && spheres[here.sphere].index < spheres[best.sphere].index) {
         return here;
@@ -26,7 +20,7 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
     let climber = climber(ray);
     var best = Hit(MISS, NO_SPHERE);
     var way = Way(ROOT, Siblings(0u, 0u, 0u, 0u), 0u);
-    while !is_at_end(way) && best.sphere != UNFINISHED {
+    while !has_ended(way) {
         if holds_spheres(way) {
             best = nearest_of(way.item, best, ray, leaving);
             way.item = NOTHING;
@@ -36,7 +30,7 @@ fn nearest_hierarchy(ray: Ray, leaving: u32) -> Hit {
             descend(&way, climber, best.distance);
         }
     }
-    if !is_at_end(way) {
+    if !has_ended(way) {
         return Hit(MISS, UNFINISHED);
     }
     return best;

@@ -26,16 +26,15 @@ pub fn centers(count: usize) -> Vec<DVec3> {
         let [x, y, z, _] = random_bits(SampleKey { pixel: 0, index }, 0, 5);
         DVec3::new(coordinate(x), coordinate(y), coordinate(z))
     };
-    // Cells of one radius hold one centre each; two radii reach two cells far.
-    let (least, mut cells) = (2.0 * radius(count), HashMap::with_capacity(count));
-    let around = || (0..125).map(|i| IVec3::new(i % 5, i / 5 % 5, i / 25) - 2);
+    // Cells of two radii: what is nearer than that is in the next cell at most.
+    let (least, mut cells) = (2.0 * radius(count), HashMap::<IVec3, Vec<DVec3>>::new());
+    let around = || (0..27).map(|i| IVec3::new(i % 3, i / 3 % 3, i / 9) - 1);
     let stays = |center: &DVec3| {
-        let cell = (center / radius(count)).floor().as_ivec3();
-        let is_free = around()
-            .filter_map(|offset| cells.get(&(cell + offset)))
-            .all(|other: &DVec3| other.distance(*center) > least);
+        let cell = (center / least).floor().as_ivec3();
+        let mut near = around().filter_map(|offset| cells.get(&(cell + offset))).flatten();
+        let is_free = near.all(|other| other.distance(*center) > least);
         if is_free {
-            cells.insert(cell, *center);
+            cells.entry(cell).or_default().push(*center);
         }
         is_free
     };

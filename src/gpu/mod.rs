@@ -2,6 +2,7 @@
 
 mod bands;
 mod device;
+mod iterations;
 mod pace;
 mod pipeline;
 pub mod probe;

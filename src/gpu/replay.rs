@@ -2,9 +2,10 @@
 
 use super::bands::read_buffer;
 use super::device::Gpu;
+use super::iterations::check_iterations;
 use super::pipeline::Pipeline;
 use super::scene::{Binding, SceneBuffers, WRITTEN};
-use super::tracer::{buffer, check_iterations};
+use super::tracer::buffer;
 use crate::bound::sample_scale;
 use crate::effects::Effects;
 use crate::kernel::{self, Kernel, KernelUnits, Packed, layout};
@@ -35,7 +36,7 @@ impl<'a> Replayer<'a> {
         let viewpoint = Viewpoint::of(scene);
         let effects = Effects::of(scene, &viewpoint);
         let packed = kernel::pack(scene, &viewpoint, effects, sample_scale(scene));
-        check_iterations(scene, &packed)?;
+        check_iterations(scene, effects, &packed)?;
         Self::with_kernel(scene, gpu, &packed, &Kernel::of(scene, effects, &packed).replay_wgsl())
     }
 

@@ -2,6 +2,7 @@
 
 use super::bands::{self, Band};
 use super::device::Gpu;
+use super::iterations::check_iterations;
 use super::pace::Pace;
 use super::pipeline::Pipeline;
 use super::scene::{Binding, SceneBuffers, WRITTEN};
@@ -9,16 +10,11 @@ use crate::bound::sample_scale;
 use crate::effects::Effects;
 use crate::film::{Film, FilmError, SampleRanges, SampleScale};
 use crate::kernel::{self, Kernel, Packed, Tile, layout};
-use crate::light_tree::most_iterations;
 use crate::scene::{ImageSize, Scene};
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
 use crate::viewpoint::Viewpoint;
 use std::ops::Range;
 use std::time::Instant;
-
-/// lavapipe leaves a loop without a word after this many iterations, counted over all
-/// loops of an invocation group (`LP_MAX_TGSI_LOOP_ITERATIONS` in Mesa).
-const MAX_ITERATIONS: u64 = 65_535;
 
 /// The device counts invalid samples in 32 bits, so its ledger is taken to the host before it
 /// can have met that many: after this many samples and one more dispatch, which is shorter.
@@ -63,7 +59,7 @@ impl GpuTracer {
     /// As [`Self::new`].
     pub fn with_effects(scene: &Scene, gpu: Gpu, effects: Effects) -> Result<Self, TraceError> {
         let packed = kernel::pack(scene, &Viewpoint::of(scene), effects, sample_scale(scene));
-        check_iterations(scene, &packed)?;
+        check_iterations(scene, effects, &packed)?;
         Self::with_kernel(scene, gpu, &packed, &Kernel::of(scene, effects, &packed).wgsl())
     }
 
@@ -253,28 +249,6 @@ fn invalid_sample(record: &[u32; layout::RECORD_WORDS], bound: f32) -> InvalidSa
             None => InvalidReason::AboveBound,
         },
     }
-}
-
-/// Refuses paths whose loops a driver may cut short: a vertex that samples lights goes
-/// through the spheres twice and through the lights up to three times (two passes to
-/// pick one, one for the chance of one that the path hits by itself).
-pub(super) fn check_iterations(scene: &Scene, packed: &Packed) -> Result<(), TraceError> {
-    if !scene.settings().estimator().samples_lights() {
-        return Ok(());
-    }
-    let (spheres, lights) = (scene.spheres().len() as u64, packed.lights.len());
-    let vertex = 1 + 2 * (spheres + 1) + most_iterations(lights);
-    let most = MAX_ITERATIONS / vertex - 1;
-    let bounces = scene.settings().bounces();
-    if u64::from(bounces) < most {
-        return Ok(());
-    }
-    Err(TraceError::Device(format!(
-        "{bounces} bounces among {spheres} spheres with {lights} lights are more than the {} \
-         estimator traces on a device in one go; it takes fewer than {most} bounces here \
-         (--device cpu takes any)",
-        scene.settings().estimator().name()
-    )))
 }
 
 pub(super) fn buffer<T>(

@@ -7,7 +7,7 @@ use super::wide::Wide;
 use glam::Vec3A;
 
 /// Most things in one leaf.
-pub const LEAF: usize = 4;
+pub const LEAF: usize = 2;
 
 /// Most inner nodes above a leaf.
 ///

@@ -8,6 +8,7 @@
 mod bins;
 mod bounds;
 mod build;
+mod lines;
 mod pairs;
 mod wide;
 

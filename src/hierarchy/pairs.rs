@@ -54,19 +54,17 @@ impl<J> Search<'_, J> {
             let pairs = places.flat_map(|i| things[i + 1..].iter().map(move |&b| (things[i], b)));
             return self.look(things.len() * (things.len() - 1) / 2, pairs);
         }
-        let (left, right) = (index + 1, node.first as usize);
-        let (of_left, of_right) = if right - left < SHARED {
-            (self.within(left), self.within(right))
-        } else {
-            rayon::join(|| self.within(left), || self.within(right))
-        };
-        Ok(lesser(lesser(of_left?, of_right?), self.across(left, right)?))
+        let [left, right] = [index + 1, node.first as usize];
+        let of_halves = both(right - left, || self.within(left), || self.within(right))?;
+        Ok(lesser(of_halves, self.across(left, right)?))
     }
 
     /// The pairs of one thing of each of two subtrees.
-    fn across<K: Ord, T>(&self, a: usize, b: usize) -> Least<K, T>
+    fn across<K, T>(&self, a: usize, b: usize) -> Least<K, T>
     where
-        J: Fn(u32, u32) -> Option<(K, T)>,
+        K: Ord + Send,
+        T: Send,
+        J: Fn(u32, u32) -> Option<(K, T)> + Sync,
     {
         let (first, second) = (&self.tree.nodes[a], &self.tree.nodes[b]);
         if !first.bounds.overlaps(&second.bounds) {
@@ -78,9 +76,11 @@ impl<J> Search<'_, J> {
             let pairs = ours.iter().flat_map(|&i| theirs.iter().map(move |&j| (i, j)));
             self.look(ours.len() * theirs.len(), pairs)
         } else if second.count > 0 || (first.count == 0 && size(first) >= size(second)) {
-            Ok(lesser(self.across(a + 1, b)?, self.across(first.first as usize, b)?))
+            let [left, right] = [a + 1, first.first as usize];
+            both(right - left, || self.across(left, b), || self.across(right, b))
         } else {
-            Ok(lesser(self.across(a, b + 1)?, self.across(a, second.first as usize)?))
+            let [left, right] = [b + 1, second.first as usize];
+            both(right - left, || self.across(a, left), || self.across(a, right))
         }
     }
 
@@ -100,6 +100,16 @@ impl<J> Search<'_, J> {
         }
         Ok(pairs.map(|(a, b)| (self.judge)(a, b)).fold(None, lesser))
     }
+}
+
+/// The lesser of what two searches find; on two threads where one has many nodes before it.
+fn both<K: Ord + Send, T: Send>(
+    nodes: usize,
+    a: impl FnOnce() -> Least<K, T> + Send,
+    b: impl FnOnce() -> Least<K, T> + Send,
+) -> Least<K, T> {
+    let (a, b) = if nodes < SHARED { (a(), b()) } else { rayon::join(a, b) };
+    Ok(lesser(a?, b?))
 }
 
 /// The one with the lesser key.

@@ -6,6 +6,7 @@ mod pack;
 mod search;
 mod text;
 mod tile;
+mod turns;
 mod unrolled;
 mod validate;
 mod wide;

@@ -1,6 +1,7 @@
 //! A validated scene in kernel units, ready for the device.
 
 use super::layout::{self, SPHERE_CAPACITY};
+use super::turns::most_turns;
 use super::wide::Wide;
 use crate::effects::{Effect, Effects};
 use crate::film::SampleScale;
@@ -50,8 +51,10 @@ pub struct Packed {
     pub lights: Vec<u32>,
     /// The hierarchy; empty where there is none.
     pub nodes: Vec<layout::Node>,
-    /// Most items that wait while a ray goes through the hierarchy.
+    /// Most siblings that wait while a ray goes through the hierarchy.
     pub stack: u32,
+    /// Most turns that a ray is to be reckoned with in its loop there.
+    pub turns: u64,
     /// The tree over the lights; empty where there is none.
     pub light_tree: Vec<layout::LightNode>,
     /// Form of every sphere, in the order of the scene file.
@@ -80,7 +83,8 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
         (0..spheres.len()).partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
     let small: Vec<layout::Sphere> = small.iter().map(packed_sphere).collect();
     let boxes: Vec<Bounds> = small.iter().map(bounds).collect();
-    let wide = Wide::of(&Hierarchy::build(&boxes));
+    let hierarchy = Hierarchy::build(&boxes);
+    let wide = Wide::of(&hierarchy);
     let of_form = |wanted| large.iter().filter(move |&&index| forms[index] == wanted);
 
     let mut packed: Vec<layout::Sphere> = wide.order.iter().map(|&i| small[i as usize]).collect();
@@ -110,15 +114,16 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
         lights,
         nodes: wide.nodes,
         stack: wide.stack,
+        turns: most_turns(&hierarchy, &small),
         light_tree,
         forms: forms.to_vec(),
     }
 }
 
-/// Room in a box around a sphere, in radii. Where a ray starts close to a sphere, the constant
-/// term of its quadratic cancels, and a hit may come out too near by 2√(5u) of a radius
-/// (DESIGN.md, "The hierarchy").
-const ROOM: f64 = 1.0 / 512.0;
+/// Room in a box around a sphere, in radii: hits that rounding finds beside the sphere are no
+/// farther from it, for rays that start within two radii; for others the kernel gives boxes
+/// room by the size of the coordinates (DESIGN.md, "Many spheres").
+const ROOM: f64 = 1.0 / 4096.0;
 
 fn bounds(sphere: &layout::Sphere) -> Bounds {
     let center = DVec3::from(sphere.position.map(f64::from));

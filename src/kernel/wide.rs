@@ -2,7 +2,7 @@
 
 use super::layout;
 use super::pack::{float, word};
-use crate::hierarchy::{Bounds, Hierarchy};
+use crate::hierarchy::{Bounds, Hierarchy, LEAF};
 use glam::DVec3;
 
 /// Children of a node.
@@ -16,6 +16,9 @@ const STEPS: f64 = 255.0;
 
 /// Keeps the step a normal `f32`.
 const SMALLEST_SIDE: f64 = 1e-30;
+
+/// The kernel looks at a leaf's spheres two at a time.
+const _: () = assert!(LEAF <= 2);
 
 /// A hierarchy with four children to a node.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -27,6 +27,9 @@ pub(super) const ERROR: f64 = 1.2e-7;
 /// Share of the picture by which a rim may be seen off.
 pub(super) const MOVED: f64 = 5e-4;
 
+/// What is smaller than this share of the picture, or of the distance from a light, is a speck.
+const SPECK: f64 = 0.01;
+
 /// A rim for which this field of view would be too narrow, in radians, is one of a sphere
 /// that is too near.
 const NARROW: f64 = 0.1;
@@ -118,11 +121,33 @@ impl<'a> Judge<'a> {
     /// Two spheres that touch, overlap or nearly do.
     fn judge_pair(&self, small: &'a Sphere, large: &'a Sphere) -> Option<Fault<'a>> {
         let inside = [small, large].map(|sphere| self.is_inside(sphere));
-        match touch(small, large, inside, self)? {
+        let touch = touch(small, large, inside, self)?;
+        if !matches!(touch, Touch::Close(_)) && self.is_speck(small, large) {
+            return None;
+        }
+        match touch {
             Touch::Close(limit) => Some(Fault::Close { small, large, limit }),
             Touch::Hidden(limit) => Some(Fault::Hidden { small, large, limit }),
             Touch::Coincident(limit) => Some(Fault::Coincident { small, large, limit }),
         }
+    }
+
+    /// Whether neither of two spheres emits, and the smaller one is a speck as seen by the camera
+    /// and by every light: which part of it shows changes the picture by less than its area,
+    /// 3e-4 of it. Where millions of spheres lie at random, some nearly hide others.
+    fn is_speck(&self, small: &Sphere, large: &Sphere) -> bool {
+        let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
+        let from = |point: DVec3| (point.distance(small.center()) - small.radius()).max(0.0);
+        let camera = self.scene.camera();
+        let width = 2.0 * (camera.vertical_fov() / 2.0).tan() * from(camera.position());
+        let height = |light: &Sphere| {
+            (light.center().distance(small.center()) - light.radius()).abs() - small.radius()
+        };
+        let mut lights = self.scene.spheres().iter().filter(|sphere| emits(sphere));
+        !emits(small)
+            && !emits(large)
+            && small.radius() <= SPECK * width
+            && lights.all(|light| small.radius() <= SPECK * height(light))
     }
 
     /// The rim of a sphere in the picture is seen off by the error δ of the camera's place over

@@ -1,0 +1,35 @@
+//! How often a ray may turn in the loop that goes through the hierarchy.
+
+use super::layout;
+use crate::hierarchy::Hierarchy;
+use glam::DVec3;
+
+/// Hierarchies of up to this many nodes may be gone through whole.
+const FEW_NODES: usize = 4096;
+
+/// Lines that are tried in larger ones.
+const LINES: u64 = 4096;
+
+/// Most turns that a ray is to be reckoned with. A turn looks at one node, at some spheres, or
+/// at both, so that there are never more than nodes. In large hierarchies, where no ray comes
+/// near that, it is the most nodes that a line goes through, among many lines through two
+/// spheres each: a ray ends where it hits something, a line has no ends.
+pub(super) fn most_turns(hierarchy: &Hierarchy, spheres: &[layout::Sphere]) -> u64 {
+    let nodes = hierarchy.nodes().len();
+    let most = if nodes <= FEW_NODES { nodes } else { hierarchy.most_met(&lines(spheres)) };
+    most as u64
+}
+
+/// Lines through the centres of two spheres, from all over the scene.
+fn lines(spheres: &[layout::Sphere]) -> Vec<(DVec3, DVec3)> {
+    // Multiples of two large primes, which are as good as random here.
+    let center = |number: u64| {
+        let place = usize::try_from(number % spheres.len() as u64).expect("fewer than spheres");
+        DVec3::from(spheres[place].position.map(f64::from))
+    };
+    (0..LINES)
+        .map(|i| (center(i * 2_654_435_761), center(i * 2_246_822_519 + 1)))
+        .filter(|(from, to)| from != to)
+        .map(|(from, to)| (from, to - from))
+        .collect()
+}
