@@ -196,27 +196,58 @@ fn probe_film(@builtin(global_invocation_id) id: vec3<u32>) {
     add_sample(inputs[id.x].w * FILM_WORDS, input_floats(id.x).xyz);
 }
 
-// No input. Result: every field of the uniform buffer as the kernel reads it, in the
-// order of the structs, padding left out as zeros.
+// Row: origin with the distance of the light; direction with the packed sphere that the ray
+// leaves; the packed light. Result: 1 if something hides the light, 1 if the search was cut
+// short, 0, 0.
 @compute @workgroup_size(64)
-fn probe_echo(@builtin(global_invocation_id) id: vec3<u32>) {
-    if id.x >= SPHERE_CAPACITY { return; }
-    if id.x == 0u {
-        outputs[0] = vec4<u32>(bitcast<vec3<u32>>(scene.origin), scene.seed);
-        outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.factored_count);
-        outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
-        outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
-        outputs[4] = vec4<u32>(
-            scene.sphere_count, scene.light_count, bitcast<u32>(scene.approach),
-            scene.hierarchy_count);
-        outputs[5] = vec4<u32>(bitcast<u32>(scene.reach), 0u, 0u, 0u);
-        for (var i = 0u; i < LIGHT_VECTORS; i++) {
-            outputs[6u + i] = lights[i];
-        }
-    }
+fn probe_occluded(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    let origin = input_floats(3u * id.x);
+    let direction = input_floats(3u * id.x + 1u);
+    let leaving = inputs[3u * id.x + 1u].w;
+    let light = inputs[3u * id.x + 2u].x;
+    let hidden = occluded(Ray(origin.xyz, direction.xyz), leaving, light, origin.w);
+    outputs[id.x] = vec4<u32>(u32(hidden), u32(unfinished), 0u, 0u);
+}
+
+// No input. Result: every field of the scene's header as the kernel reads it, in the order of
+// the struct, padding left out as zeros.
+@compute @workgroup_size(64)
+fn probe_echo_scene(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x > 0u { return; }
+    outputs[0] = vec4<u32>(bitcast<vec3<u32>>(scene.origin), scene.seed);
+    outputs[1] = vec4<u32>(bitcast<vec3<u32>>(scene.forward), scene.factored_count);
+    outputs[2] = vec4<u32>(bitcast<vec3<u32>>(scene.right), bitcast<u32>(scene.film_shift));
+    outputs[3] = vec4<u32>(bitcast<vec3<u32>>(scene.up), scene.bound_bits);
+    outputs[4] = vec4<u32>(
+        scene.sphere_count, scene.light_count, bitcast<u32>(scene.approach),
+        scene.hierarchy_count);
+    outputs[5] = vec4<u32>(bitcast<u32>(scene.reach), 0u, 0u, 0u);
+}
+
+// The same of the spheres, three results each.
+@compute @workgroup_size(64)
+fn probe_echo_spheres(@builtin(global_invocation_id) id: vec3<u32>) {
+    if 3u * id.x >= arrayLength(&outputs) { return; }
     let s = spheres[id.x];
-    let at = 6u + LIGHT_VECTORS + 3u * id.x;
-    outputs[at] = vec4<u32>(bitcast<vec3<u32>>(s.position), bitcast<u32>(s.size));
-    outputs[at + 1u] = vec4<u32>(bitcast<vec3<u32>>(s.color), bitcast<u32>(s.exponent));
-    outputs[at + 2u] = vec4<u32>(bitcast<u32>(s.offset), s.index, s.kind, s.inside);
+    outputs[3u * id.x] = vec4<u32>(bitcast<vec3<u32>>(s.position), bitcast<u32>(s.size));
+    outputs[3u * id.x + 1u] = vec4<u32>(bitcast<vec3<u32>>(s.color), bitcast<u32>(s.exponent));
+    outputs[3u * id.x + 2u] = vec4<u32>(bitcast<u32>(s.offset), s.index, s.kind, s.inside);
+}
+
+// The same of the lights' places, one each.
+@compute @workgroup_size(64)
+fn probe_echo_lights(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&outputs) { return; }
+    outputs[id.x] = vec4<u32>(light_at(id.x), 0u, 0u, 0u);
+}
+
+// The same of the light tree's nodes, two each.
+@compute @workgroup_size(64)
+fn probe_echo_light_tree(@builtin(global_invocation_id) id: vec3<u32>) {
+    if 2u * id.x >= arrayLength(&outputs) { return; }
+    let n = light_tree[id.x];
+    outputs[2u * id.x] = vec4<u32>(bitcast<vec3<u32>>(n.center), bitcast<u32>(n.radius));
+    outputs[2u * id.x + 1u] = vec4<u32>(
+        bitcast<u32>(n.brightness), bitcast<u32>(n.everywhere), n.light, 0u);
 }

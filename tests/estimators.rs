@@ -268,7 +268,16 @@ const FAULTS: &[Faulty] = &[
             ),
         ],
     ),
-    ("crowd", coincident_crowd, &[("both of a place seen", Mis, " || earlier <= distance", "")]),
+    (
+        "crowd",
+        coincident_crowd,
+        &[(
+            "both of a place seen",
+            Mis,
+            "i != scene.factored_count;\n    return first < distance || earlier <= distance;",
+            "i != scene.factored_count;\n    return first < distance;",
+        )],
+    ),
 ];
 
 #[test]

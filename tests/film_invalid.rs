@@ -207,7 +207,7 @@ fn a_path_cut_short_is_unfinished() {
         assert!(ledger.count > 0 && ledger.records.len() == 16, "{bounces}: {ledger:?}");
         assert!(ledger.records.iter().all(|r| r.reason == InvalidReason::Unfinished));
         // One bounce less, properly ended, leaves the same light.
-        let packed = support::scenes::packed(&scene).scene;
+        let packed = support::scenes::packed(&scene);
         let shorter = kernel(&under(bounces - 1));
         let mut tracer =
             candor::gpu::GpuTracer::with_kernel(&scene, support::gpu::open(), &packed, &shorter)

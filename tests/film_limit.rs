@@ -2,6 +2,7 @@
 //! up to the last one, and what the tracers refuse beyond.
 
 mod support {
+    pub mod bare;
     pub mod gpu;
     pub mod scenes;
     pub mod tracers;
@@ -13,7 +14,7 @@ use candor::gpu::probe::{Probe, Row};
 use candor::kernel::{layout, probe_source};
 use candor::scene::MAX_SPP;
 use candor::tracer::{TraceError, Tracer};
-use support::{gpu, scenes, tracers};
+use support::{bare, gpu, scenes, tracers};
 
 /// Samples that the device adds in one go.
 const LAST: u64 = 1 << 16;
@@ -60,7 +61,8 @@ fn at(total: u64, wgsl: String) -> (Vec<PixelWords>, Vec<PixelWords>) {
     let scale = fullest();
     let samples = samples(scale);
     let words = |count| samples.iter().map(move |&rgb| repeated(rgb, count, scale));
-    let scene = layout::Scene { film_shift: scale.shift(), ..layout::Scene::zeroed() };
+    let header = layout::Scene { film_shift: scale.shift(), ..layout::Scene::zeroed() };
+    let scene = bare::bare(header, Vec::new());
     let gpu = gpu::open();
     let probe = Probe::with_source(&gpu, &scene, wgsl).expect("the probe compiles");
     let rows: Vec<Row> = (0..LAST)

@@ -8,6 +8,7 @@
 )]
 
 mod support {
+    pub mod bare;
     pub mod gpu;
 }
 
@@ -19,8 +20,9 @@ use candor::film::{
     to_fixed,
 };
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
+use candor::kernel::{Packed, layout};
 use candor::scene::ImageSize;
+use support::bare::bare;
 
 /// A film of one pixel.
 fn one_pixel(scale: SampleScale, samples: u64, words: PixelWords) -> Film {
@@ -69,7 +71,7 @@ fn fixed_point(row: &Row) -> [Row; 3] {
 #[test]
 fn the_device_and_the_host_make_the_same_integers() {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let rows = fixed_point_rows();
     let device = probe.run("probe_fixed", &rows, 3 * rows.len()).expect("the device runs");
     for (row, found) in rows.iter().zip(device.as_chunks::<3>().0) {
@@ -94,8 +96,9 @@ fn fixed_point_truncates() {
 }
 
 /// A scene for `add_sample`: it reads the shift alone.
-fn scene_with(scale: SampleScale) -> layout::Scene {
-    layout::Scene { film_shift: scale.shift(), ..layout::Scene::zeroed() }
+fn scene_with(scale: SampleScale) -> Packed {
+    let header = layout::Scene { film_shift: scale.shift(), ..layout::Scene::zeroed() };
+    bare(header, Vec::new())
 }
 
 /// The words after every row (r, g, b, pixel) was added on the host, in 128-bit sums.

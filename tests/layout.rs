@@ -1,15 +1,14 @@
-//! The Rust mirrors of the WGSL structs against naga and through the device, and every
-//! kernel that can be composed.
+//! The Rust mirrors of the WGSL structs against naga and through the device.
 
 mod support {
     pub mod gpu;
 }
 
-use bytemuck::Zeroable;
+use bytemuck::{Pod, Zeroable};
 use candor::effects::Effects;
 use candor::gpu::probe::{Probe, Row};
 use candor::kernel::{
-    Form, Kernel, Lights, Nearest, SPHERE_CAPACITY, Tile, layout, probe_source, validate,
+    Kernel, Packed, SPHERE_CAPACITY, hierarchy_probe_source, layout, probe_source, validate,
 };
 use candor::scene::{Estimator, ImageSize};
 use candor::tracer::LEDGER_RECORDS;
@@ -62,10 +61,12 @@ fn mirrors() -> Vec<Layout> {
             sphere_count,
             light_count,
             approach,
-            padding,
-            lights,
-            spheres
+            hierarchy_count,
+            reach,
+            padding
         }),
+        mirror!(Node { origin, kinds, low, first_node, high, first_sphere }),
+        mirror!(LightNode { center, radius, brightness, everywhere, light, padding }),
         mirror!(Dispatch {
             first_sample_low,
             first_sample_high,
@@ -143,8 +144,10 @@ fn general() -> Kernel {
         bounces: 2,
         estimator: Estimator::Mis,
         effects: Effects::ALL,
-        nearest: Nearest::Loop,
-        lights: Lights::Many { huge: true },
+        written: None,
+        stored: false,
+        light: 0,
+        stack: 8,
     }
 }
 
@@ -172,8 +175,14 @@ fn a_wrong_layout_is_rejected() {
     // One row per struct: fields in another order, or of another type.
     let faults = [
         ("Sphere", "index: u32,\n    kind: u32,", "kind: u32,\n    index: u32,"),
-        ("Scene", "lights: array<vec4<u32>, LIGHT_VECTORS>", "lights: array<vec4<u32>, 127u>"),
+        (
+            "Scene",
+            "approach: f32,\n    hierarchy_count: u32,",
+            "hierarchy_count: u32,\n    approach: f32,",
+        ),
         ("Scene", "origin: vec3<f32>,\n    seed: u32,", "seed: u32,\n    origin: vec3<f32>,"),
+        ("Node", "low: vec3<u32>,\n    first_node: u32,", "first_node: u32,\n    low: vec3<u32>,"),
+        ("LightNode", "    brightness: f32,", "    more: u32,\n    brightness: f32,"),
         ("Dispatch", "row_start: u32,\n    row_end: u32,", "row_end: u32,\n    row_start: u32,"),
         ("Ledger", "array<u32, LEDGER_RECORDS * RECORD_WORDS>", "array<u32, 129>"),
     ];
@@ -205,93 +214,98 @@ fn constants_are_the_kernels() {
     assert_eq!(constant(&module, "KIND_VELVET"), None);
 }
 
-/// A scene whose every word is another one, each a normal float.
-fn scene_of_distinct_words() -> layout::Scene {
-    let mut scene = layout::Scene::zeroed();
-    for (word, value) in
-        bytemuck::cast_slice_mut(std::slice::from_mut(&mut scene)).iter_mut().zip(0x3f80_0000..)
-    {
+/// Values whose every word is another one, from `first` on; as floats they are all normal.
+fn distinct<T: Pod>(count: usize, first: u32) -> Vec<T> {
+    let mut values = vec![T::zeroed(); count];
+    for (word, value) in bytemuck::cast_slice_mut(&mut values).iter_mut().zip(first..) {
         *word = value;
     }
-    scene
+    values
 }
 
-/// The rows that `probe_echo` writes.
-fn echo_of(scene: &layout::Scene) -> Vec<Row> {
-    let row = |v: [f32; 3], w: u32| [v[0].to_bits(), v[1].to_bits(), v[2].to_bits(), w];
-    let mut rows = vec![
+fn row(v: [f32; 3], w: u32) -> Row {
+    let [x, y, z] = v.map(f32::to_bits);
+    [x, y, z, w]
+}
+
+/// What `probe_echo_scene` writes.
+fn scene_rows(scene: &layout::Scene) -> Vec<Row> {
+    vec![
         row(scene.origin, scene.seed),
         row(scene.forward, scene.factored_count),
         row(scene.right, scene.film_shift.cast_unsigned()),
         row(scene.up, scene.bound_bits),
-        [scene.sphere_count, scene.light_count, scene.approach.to_bits(), 0],
+        [scene.sphere_count, scene.light_count, scene.approach.to_bits(), scene.hierarchy_count],
+        [scene.reach.to_bits(), 0, 0, 0],
+    ]
+}
+
+fn sphere_rows(s: &layout::Sphere) -> [Row; 3] {
+    let last = [s.offset.to_bits(), s.index, s.kind, s.inside];
+    [row(s.position, s.size.to_bits()), row(s.color, s.exponent.to_bits()), last]
+}
+
+fn light_node_rows(n: &layout::LightNode) -> [Row; 2] {
+    let last = [n.brightness.to_bits(), n.everywhere.to_bits(), n.light, 0];
+    [row(n.center, n.radius.to_bits()), last]
+}
+
+fn node_rows(n: &layout::Node) -> [Row; 3] {
+    let words = |[x, y, z]: [u32; 3], w| [x, y, z, w];
+    [row(n.origin, n.kinds), words(n.low, n.first_node), words(n.high, n.first_sphere)]
+}
+
+/// What the entry points must write, by their names.
+fn echoes(packed: &Packed) -> Vec<(&'static str, Vec<Row>)> {
+    let mut echoes = vec![
+        ("probe_echo_scene", scene_rows(&packed.scene)),
+        ("probe_echo_spheres", packed.spheres.iter().flat_map(sphere_rows).collect()),
+        ("probe_echo_lights", packed.lights.iter().map(|&place| [place, 0, 0, 0]).collect()),
+        ("probe_echo_light_tree", packed.light_tree.iter().flat_map(light_node_rows).collect()),
     ];
-    rows.extend(scene.lights.as_chunks().0);
-    for s in &scene.spheres {
-        rows.push(row(s.position, s.size.to_bits()));
-        rows.push(row(s.color, s.exponent.to_bits()));
-        rows.push([s.offset.to_bits(), s.index, s.kind, s.inside]);
+    if !packed.nodes.is_empty() {
+        let nodes = packed.nodes.iter().flat_map(node_rows).collect();
+        echoes.push(("probe_echo_nodes", nodes));
     }
-    rows
+    echoes
+}
+
+/// As many spheres as a uniform buffer holds, or more, with nodes.
+fn scene_of_distinct_words(stored: bool) -> Packed {
+    let spheres = if stored { 2 * SPHERE_CAPACITY } else { SPHERE_CAPACITY };
+    Packed {
+        scene: distinct(1, 0x3f80_0000)[0],
+        spheres: distinct(spheres, 0x3f90_0000),
+        lights: distinct(spheres, 0x3fa0_0000),
+        nodes: if stored { distinct(300, 0x3fb0_0000) } else { Vec::new() },
+        stack: 1,
+        light_tree: distinct(300, 0x3fc0_0000),
+        forms: Vec::new(),
+    }
 }
 
 #[test]
 fn the_device_reads_every_field_as_it_was_written() {
     let gpu = support::gpu::open();
-    let scene = scene_of_distinct_words();
-    let probe = Probe::new(&gpu, &scene).expect("the probe compiles");
-    let count = 5 + SPHERE_CAPACITY / 4 + 3 * SPHERE_CAPACITY;
-    let rows = probe.run("probe_echo", &[], count).expect("the device runs");
-    assert_eq!(rows, echo_of(&scene));
-    // Two fields of one type exchanged, far from each other and side by side.
-    let mut exchanged = scene;
-    std::mem::swap(&mut exchanged.factored_count, &mut exchanged.seed);
-    assert_ne!(rows, echo_of(&exchanged));
-    let mut exchanged = scene;
-    let last = &mut exchanged.spheres[SPHERE_CAPACITY - 1];
-    std::mem::swap(&mut last.kind, &mut last.inside);
-    assert_ne!(rows, echo_of(&exchanged));
-}
-
-/// Forms of `factored` and `anchored` spheres, mixed.
-fn forms(factored: usize, anchored: usize) -> Nearest {
-    let mut forms = vec![Form::Factored; factored];
-    (0..anchored).for_each(|i| forms.insert((2 * i).min(forms.len()), Form::Anchored));
-    Nearest::Unrolled(forms)
-}
-
-#[test]
-fn every_composition_is_valid() {
-    let sides = [1, 2, 3, 5, 64];
-    let unrolled = [(0, 0), (1, 0), (0, 1), (3, 5), (16, 0), (0, 16), (9, 7)];
-    let searches = unrolled.map(|(factored, anchored)| forms(factored, anchored));
-    let mut turn = 0;
-    for (width, height) in sides.iter().flat_map(|&w| sides.map(|h| (w, h))) {
-        let size = ImageSize::new(width, height).expect("a size");
-        let tile = Tile::of(size);
-        assert_eq!(tile.width * tile.height * tile.samples, Tile::INVOCATIONS, "{tile:?}");
-        for nearest in std::iter::once(&Nearest::Loop).chain(&searches) {
-            for flags in 0..8 {
-                let [diffuse, glossy, interior] = [1, 2, 4].map(|flag| flags & flag != 0);
-                let effects = Effects { diffuse, glossy, interior };
-                let nearest = nearest.clone();
-                // The estimators and kinds of lights take turns over the compositions.
-                let estimator = Estimator::ALL[turn % 4];
-                let huge = turn / 12 % 2 == 0;
-                let lights = match turn / 4 % 3 {
-                    0 => Lights::None,
-                    1 => Lights::One { place: 0, huge },
-                    _ => Lights::Many { huge },
-                };
-                turn += 1;
-                let bounces = flags * 9;
-                let kernel = Kernel { size, bounces, estimator, effects, nearest, lights };
-                for text in [kernel.wgsl(), kernel.replay_wgsl()] {
-                    if let Err(message) = validate(&text) {
-                        panic!("{kernel:?}: {message}");
-                    }
-                }
-            }
+    for stored in [false, true] {
+        let packed = scene_of_distinct_words(stored);
+        let text = if stored { hierarchy_probe_source(packed.stack) } else { probe_source() };
+        let probe = Probe::with_source(&gpu, &packed, text).expect("the probe compiles");
+        // Two fields of one type exchanged, far from each other and side by side.
+        let mut faulty = packed.clone();
+        std::mem::swap(&mut faulty.scene.factored_count, &mut faulty.scene.seed);
+        let last = faulty.spheres.last_mut().expect("a sphere");
+        std::mem::swap(&mut last.kind, &mut last.inside);
+        faulty.lights.swap(2, 3);
+        let last = faulty.light_tree.last_mut().expect("a node");
+        std::mem::swap(&mut last.brightness, &mut last.everywhere);
+        if let Some(node) = faulty.nodes.last_mut() {
+            std::mem::swap(&mut node.low, &mut node.high);
+        }
+        for ((entry, expected), (_, fault)) in echoes(&packed).into_iter().zip(echoes(&faulty)) {
+            let rows = probe.run(entry, &[], expected.len()).expect("the device runs");
+            assert_eq!(rows, expected, "{entry}");
+            assert_ne!(rows, fault, "{entry}");
         }
     }
 }
@@ -299,6 +313,7 @@ fn every_composition_is_valid() {
 #[test]
 fn the_probe_is_valid_and_a_fault_is_not() {
     validate(&probe_source()).expect("a valid probe");
+    validate(&hierarchy_probe_source(8)).expect("a valid probe");
     let fault = general_kernel().replace("2.0 * polar.y", "2u * polar.y");
     validate(&fault).expect_err("u32 times f32");
     let fault = general_kernel().replace("@group(0) @binding(3)", "@group(0) @binding(2)");

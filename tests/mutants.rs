@@ -16,6 +16,10 @@ mod support {
 use candor::scene::Estimator::{self, Cosine, Explicit, Implicit, Mis};
 use support::kernel_judge::Judge;
 
+/// What is wrong, under which estimator, what stands in the kernel, what takes its place, and
+/// who tells.
+type Mutant = (&'static str, Estimator, &'static str, &'static str, Judge);
+
 /// Of `implicit`: what is wrong, what stands in the kernel, and what takes its place.
 const MUTANTS: &[(&str, &str, &str, Judge)] = &[
     ("no cosine", "2.0 * polar.y", "2.0", Judge::Classic),
@@ -114,7 +118,7 @@ const MUTANTS: &[(&str, &str, &str, Judge)] = &[
 ];
 
 /// Of the estimators beside `implicit`.
-const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
+const OTHER_MUTANTS: &[Mutant] = &[
     (
         "sine of the cosine-weighted",
         Cosine,
@@ -193,7 +197,7 @@ const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
     (
         "lights sampled at gloss too",
         Explicit,
-        "return scene.spheres[sphere].kind == KIND_DIFFUSE;",
+        "return spheres[sphere].kind == KIND_DIFFUSE;",
         "return true;",
         Judge::Hollow,
     ),
@@ -206,7 +210,7 @@ const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
     (
         "brightness alone",
         Explicit,
-        "return cone.height * cosine * max(",
+        "return cone.height * largest_cosine(cone, point.normal) * max(",
         "return max(",
         Judge::Lamps,
     ),
@@ -232,8 +236,20 @@ const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
         Judge::Lamps,
     ),
     ("first light always", Explicit, "if u < sum {", "if true {", Judge::Crowd),
-    ("walls hide as balls", Explicit, "if i >= scene.factored_count {", "if false {", Judge::Crowd),
-    ("some are not asked", Explicit, "MISS, i == light)", "MISS, i >= light)", Judge::Crowd),
+    (
+        "walls hide as balls",
+        Explicit,
+        "let q = anchored(ray, s.position, s.offset, s.size);",
+        "let q = factored(ray, s.position, s.size);",
+        Judge::Crowd,
+    ),
+    (
+        "some are not asked",
+        Explicit,
+        "s.size), i, leaving), MISS, i == light)",
+        "s.size), i, leaving), MISS, i >= light)",
+        Judge::Crowd,
+    ),
     (
         "no heuristic for lights",
         Mis,
@@ -296,6 +312,97 @@ const OTHER_MUTANTS: &[(&str, Estimator, &str, &str, Judge)] = &[
     ),
 ];
 
+/// Of searches by hierarchy, and of walks to a light.
+const TREE_MUTANTS: &[Mutant] = &[
+    (
+        "far side of a box",
+        Implicit,
+        "select(node.high, node.low, ahead)",
+        "select(node.low, node.high, ahead)",
+        Judge::Swarm,
+    ),
+    ("boxes cut short", Implicit, "vec4<f32>(limit)", "vec4<f32>(0.5 * limit)", Judge::Swarm),
+    (
+        "boxes half as large",
+        Implicit,
+        "(node.kinds >> 16u) <<",
+        "((node.kinds >> 16u) - 1u) <<",
+        Judge::Swarm,
+    ),
+    ("a sibling forgotten", Implicit, "if met > 1u {", "if met > 2u {", Judge::Swarm),
+    ("siblings that wait forgotten", Implicit, "(*way).height++;", "", Judge::Swarm),
+    ("a child twice", Implicit, "max(c.x, c.y), max(b.x", "min(c.x, c.y), max(b.x", Judge::Swarm),
+    ("the same sibling again", Implicit, "((rest & 0x3fu) >> 2u)", "(rest & 0x3fu)", Judge::Swarm),
+    ("node of the first child", Implicit, " + countOneBits(nodes)", "", Judge::Swarm),
+    (
+        "spheres of the first child",
+        Implicit,
+        "siblings.first_sphere + spheres",
+        "siblings.first_sphere",
+        Judge::Swarm,
+    ),
+    (
+        "first sphere off by one",
+        Implicit,
+        "var i = item >> 4u;",
+        "var i = (item >> 4u) + 1u;",
+        Judge::Swarm,
+    ),
+    ("last sphere of a leaf", Implicit, "+ (item & 15u);", "+ (item & 15u) - 1u;", Judge::Swarm),
+    (
+        "last of equal distances",
+        Implicit,
+        "spheres[here.sphere].index <",
+        "spheres[here.sphere].index >",
+        Judge::Swarm,
+    ),
+    (
+        "last of a leaf's equal distances",
+        Implicit,
+        "t < here.distance",
+        "t <= here.distance",
+        Judge::Swarm,
+    ),
+    ("a light hides itself", Explicit, "i == leaving || i == light", "i == leaving", Judge::Swarm),
+    (
+        "behind the light",
+        Explicit,
+        "blocked || t < distance",
+        "blocked || t > distance",
+        Judge::Swarm,
+    ),
+    ("only the last hides", Explicit, "blocked || t < distance", "t < distance", Judge::Swarm),
+    (
+        "later ones hide",
+        Explicit,
+        "spheres[i].index < place);\n    }\n    unfinished = unfinished || i != end",
+        "spheres[i].index > place);\n    }\n    unfinished = unfinished || i != end",
+        Judge::Swarm,
+    ),
+    ("chance of the last turn", Explicit, "walk.chance * select(", "select(", Judge::Layer),
+    (
+        "light of the next leaf",
+        Explicit,
+        "light_tree[walk.node].light",
+        "light_tree[walk.node ^ 1u].light",
+        Judge::Layer,
+    ),
+    (
+        "never evenly",
+        Explicit,
+        "0.5 * walked + 0.5 / f32(scene.light_count)",
+        "walked",
+        Judge::Layer,
+    ),
+    (
+        "chance of the other side",
+        Mis,
+        "select(1.0 - chance, chance, goes_left)",
+        "select(chance, 1.0 - chance, goes_left)",
+        Judge::Layer,
+    ),
+];
+
 /// Whether the judge accepts the kernel with `to` in place of `from`; says so.
 fn survives(name: &str, estimator: Estimator, from: &str, to: &str, judge: Judge) -> bool {
     let change = |kernel: &str| {
@@ -308,11 +415,14 @@ fn survives(name: &str, estimator: Estimator, from: &str, to: &str, judge: Judge
     survives
 }
 
+fn all() -> impl Iterator<Item = Mutant> {
+    let ours = MUTANTS.iter().map(|&(name, from, to, judge)| (name, Implicit, from, to, judge));
+    ours.chain([OTHER_MUTANTS, TREE_MUTANTS].concat())
+}
+
 #[test]
 fn every_mutant_is_rejected() {
-    let ours = MUTANTS.iter().map(|&(name, from, to, judge)| (name, Implicit, from, to, judge));
-    let survivors: Vec<&str> = ours
-        .chain(OTHER_MUTANTS.iter().copied())
+    let survivors: Vec<&str> = all()
         .filter(|&(name, estimator, from, to, judge)| survives(name, estimator, from, to, judge))
         .map(|mutant| mutant.0)
         .collect();
@@ -321,9 +431,8 @@ fn every_mutant_is_rejected() {
 
 #[test]
 fn the_right_kernel_is_accepted() {
-    let asked = MUTANTS.iter().map(|mutant| (Implicit, mutant.3));
     let mut accepted = Vec::new();
-    for (estimator, judge) in asked.chain(OTHER_MUTANTS.iter().map(|mutant| (mutant.1, mutant.4))) {
+    for (_, estimator, _, _, judge) in all() {
         if !accepted.contains(&(estimator, judge)) {
             assert!(judge.accepts(estimator, &str::to_owned), "{estimator:?} {judge:?}");
             accepted.push((estimator, judge));

@@ -9,7 +9,7 @@ mod support {
     pub mod scenes;
 }
 
-use candor::kernel::{KernelUnits, layout};
+use candor::kernel::{KernelUnits, Packed, layout};
 use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
 use support::hits::{Case, U};
@@ -22,7 +22,7 @@ const NORMALIZE: f64 = 16.0 * U;
 
 /// Whether some sphere is certainly hit before `found`, or `found` is not on a sphere
 /// that can be hit there.
-fn is_nearest(scene: &layout::Scene, ray: &Ray, found: &Found) -> bool {
+fn is_nearest(scene: &Packed, ray: &Ray, found: &Found) -> bool {
     let within = |place: usize| {
         let case = case(scene, place, ray);
         let (t, bound) = (case.exact().1, case.bounds(U).distance);
@@ -31,7 +31,7 @@ fn is_nearest(scene: &layout::Scene, ray: &Ray, found: &Found) -> bool {
         (t, bound, certain)
     };
     let met = f64::from(found.distance);
-    let spheres = (0..scene.sphere_count).filter(|&place| place != ray.leaving);
+    let spheres = (0..scene.scene.sphere_count).filter(|&place| place != ray.leaving);
     let first = spheres
         .map(|place| within(place as usize))
         .all(|(t, bound, certain)| !certain || met <= t + bound);
@@ -42,7 +42,7 @@ fn is_nearest(scene: &layout::Scene, ray: &Ray, found: &Found) -> bool {
 }
 
 /// How far position and normal are from what they should be, as shares of their bounds.
-fn point_errors(scene: &layout::Scene, ray: &Ray, found: &Found) -> (f64, f64) {
+fn point_errors(scene: &Packed, ray: &Ray, found: &Found) -> (f64, f64) {
     let case = case(scene, found.sphere as usize, ray);
     let (p, n, t) = (found.position.as_dvec3(), found.normal.as_dvec3(), f64::from(found.distance));
     let (place, size) = (case.position.as_dvec3(), f64::from(case.size));
@@ -71,7 +71,7 @@ fn packed_walls_lie_on_the_walls_of_the_scene() {
         let (packed, units) = (packed(&scene), KernelUnits::of(&Viewpoint::of(&scene)));
         let mut worst = 0.0_f64;
         for index in 0..4096 {
-            let row = packed.scene.spheres[1 + index % 6];
+            let row = packed.spheres[1 + index % 6];
             let wall = &scene.spheres()[row.index as usize];
             // A point of the wall within three of its middle, without cancellation.
             let axis = wall.center().normalize();
@@ -102,14 +102,14 @@ fn packed_walls_lie_on_the_walls_of_the_scene() {
 fn the_nearest_sphere_is_found_with_its_point_and_normal() {
     for scene in [classic(size(8, 8)), many(size(8, 8)), room(1e7, true)] {
         let packed = packed(&scene);
-        let mut rays = rays(&packed.scene, 1 << 14);
+        let mut rays = rays(&packed, 1 << 14);
         let (mut off, mut turned, mut length) = (0.0_f64, 0.0_f64, 0.0_f64);
         for _ in 0..3 {
-            let found = trace(&packed.scene, &rays);
+            let found = trace(&packed, &rays);
             for (ray, found) in rays.iter().zip(&found) {
-                assert!(is_nearest(&packed.scene, ray, found), "{ray:?}: {found:?}");
+                assert!(is_nearest(&packed, ray, found), "{ray:?}: {found:?}");
                 if found.sphere != layout::NO_SPHERE {
-                    let (o, t) = point_errors(&packed.scene, ray, found);
+                    let (o, t) = point_errors(&packed, ray, found);
                     assert!(o <= 1.0 && t <= 1.0, "{ray:?}: {found:?}, {o} and {t} of the bounds");
                     (off, turned) = (off.max(o), turned.max(t));
                     length = length.max((found.normal.as_dvec3().length() - 1.0).abs());
@@ -128,14 +128,14 @@ fn the_nearest_sphere_is_found_with_its_point_and_normal() {
 #[test]
 fn wrong_hits_are_rejected() {
     let packed = packed(&many(size(8, 8)));
-    let rays = rays(&packed.scene, 4096);
-    let found = trace(&packed.scene, &rays);
+    let rays = rays(&packed, 4096);
+    let found = trace(&packed, &rays);
     let rejected = |fault: &dyn Fn(&Found) -> Found| {
         let hits = rays.iter().zip(&found).filter(|(_, f)| f.sphere != layout::NO_SPHERE);
         hits.filter(|(ray, found)| {
             let fault = fault(found);
-            let wrong = !is_nearest(&packed.scene, ray, &fault);
-            wrong || point_errors(&packed.scene, ray, &fault) > (1.0, 1.0)
+            let wrong = !is_nearest(&packed, ray, &fault);
+            wrong || point_errors(&packed, ray, &fault) > (1.0, 1.0)
         })
         .count()
     };
@@ -149,7 +149,7 @@ fn wrong_hits_are_rejected() {
     assert!(rejected(&|f| Found { position: f.position * 1.0001, ..*f }) > hits / 2);
     let self_hits = rays.iter().zip(&found).filter(|(ray, found)| {
         let leaving = Ray { leaving: found.sphere, ..**ray };
-        found.sphere != layout::NO_SPHERE && !is_nearest(&packed.scene, &leaving, found)
+        found.sphere != layout::NO_SPHERE && !is_nearest(&packed, &leaving, found)
     });
     assert_eq!(self_hits.count(), hits);
 }
@@ -160,12 +160,12 @@ fn wrong_hits_are_rejected() {
 fn a_ray_does_not_meet_the_sphere_that_it_leaves() {
     for scene in [classic(size(8, 8)), many(size(8, 8))] {
         let packed = packed(&scene);
-        let found = trace(&packed.scene, &rays(&packed.scene, 4096));
+        let found = trace(&packed, &rays(&packed, 4096));
         let away = next_rays(&found, &anywhere);
         let inward = |ray: &Ray| Ray { direction: -ray.direction, ..*ray };
         let inward: Vec<Ray> = away.iter().map(inward).collect();
         let meets_own = |rays: &[Ray], left: &[Ray]| {
-            let found = trace(&packed.scene, rays);
+            let found = trace(&packed, rays);
             found.iter().zip(left).filter(|(found, left)| found.sphere == left.leaving).count()
         };
         assert_eq!(meets_own(&away, &away) + meets_own(&inward, &inward), 0);
@@ -195,10 +195,10 @@ fn ties_go_to_the_first_in_the_file() {
         let packed = packed(&scene);
         let origin = Vec3::from_array(packed.scene.origin);
         let ray = Ray { origin, direction: Vec3::NEG_Z, leaving: layout::NO_SPHERE };
-        let found = trace(&packed.scene, &[ray])[0];
-        assert_eq!(packed.scene.spheres[found.sphere as usize].index, first, "{scene:?}");
+        let found = trace(&packed, &[ray])[0];
+        assert_eq!(packed.spheres[found.sphere as usize].index, first, "{scene:?}");
         // Without the winner, the other one is found at the very same distance.
-        let other = trace(&packed.scene, &[Ray { leaving: found.sphere, ..ray }])[0];
+        let other = trace(&packed, &[Ray { leaving: found.sphere, ..ray }])[0];
         assert_ne!(other.sphere, found.sphere);
         assert_eq!(other.distance.to_bits(), found.distance.to_bits(), "no tie: {scene:?}");
     }

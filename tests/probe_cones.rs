@@ -4,16 +4,15 @@
 #![expect(clippy::cast_possible_truncation, reason = "the device computes in f32")]
 
 mod support {
+    pub mod bare;
     #[allow(dead_code, reason = "other tests use the rest")]
     pub mod chi_square;
     pub mod gpu;
 }
 
-use bytemuck::Zeroable;
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 use glam::{DVec2, DVec3, Vec3};
 use support::chi_square::{hemisphere_p_value, lobe_p_value, p_limit};
 
@@ -26,7 +25,7 @@ const ROOT: f64 = 9.0 * U;
 
 fn run(entry: &str, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let rows = probe.run(entry, rows, results).expect("the device runs");
     rows.into_iter().map(|row| row.map(f32::from_bits)).collect()
 }

@@ -5,14 +5,13 @@
 #![expect(clippy::many_single_char_names, reason = "the names of the formulas")]
 
 mod support {
+    pub mod bare;
     pub mod gpu;
     pub mod hits;
 }
 
-use bytemuck::Zeroable;
 use candor::cpu::sphere::{MISS, Ray, anchored, entry, exit, factored};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 use glam::{DVec3, Vec3};
 use support::hits::{Case, Plan, Side, U, plans, tangents};
 
@@ -86,7 +85,7 @@ fn rows(case: &Case) -> [Row; 4] {
 /// Distance, b, c and discriminant of every case.
 fn on_device(cases: &[Case]) -> Vec<[f32; 4]> {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let rows: Vec<Row> = cases.iter().flat_map(rows).collect();
     let results = probe.run("probe_hit", &rows, cases.len()).expect("the device runs");
     results.into_iter().map(|row| row.map(f32::from_bits)).collect()

@@ -5,6 +5,7 @@
 #![expect(clippy::cast_possible_truncation, reason = "the device computes in f32")]
 
 mod support {
+    pub mod bare;
     pub mod gpu;
 }
 
@@ -16,6 +17,7 @@ use candor::gpu::probe::{Probe, Row};
 use candor::kernel::layout;
 use glam::{DVec2, DVec3, Vec3};
 use std::f64::consts::TAU;
+use support::bare::bare;
 
 const U: f64 = 1.0 / (1 << 24) as f64;
 
@@ -36,10 +38,12 @@ const LAST_EXPONENT: f64 = 80.0;
 const EXPONENTS: [f32; 8] = [0.0, 1.0, 7.5, 100.0, 1e4, 1e6, 1e8, 1e10];
 
 fn run(entry: &str, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
-    let mut scene = layout::Scene::zeroed();
-    for (sphere, exponent) in scene.spheres.iter_mut().zip(EXPONENTS) {
-        (sphere.kind, sphere.exponent) = (layout::KIND_GLOSSY, exponent);
-    }
+    let glossy = |exponent| layout::Sphere {
+        kind: layout::KIND_GLOSSY,
+        exponent,
+        ..layout::Sphere::zeroed()
+    };
+    let scene = bare(layout::Scene::zeroed(), EXPONENTS.map(glossy).to_vec());
     let gpu = support::gpu::open();
     let probe = Probe::new(&gpu, &scene).expect("the probe compiles");
     let rows = probe.run(entry, rows, results).expect("the device runs");

@@ -10,12 +10,11 @@
 )]
 
 mod support {
+    pub mod bare;
     pub mod gpu;
 }
 
-use bytemuck::Zeroable;
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -128,7 +127,7 @@ const BOUNDS: [(&str, f64); 4] =
 #[test]
 fn elementary_functions_keep_their_bounds() {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let worst = worst(|rows| probe.run("probe_math", rows, rows.len()).expect("it runs"));
     println!("{:<12}{:>10}{:>8}   relative error in units of 2^-24", "", "worst", "bound");
     for ((name, bound), (error, at)) in BOUNDS.into_iter().zip(worst) {

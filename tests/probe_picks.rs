@@ -9,19 +9,29 @@ mod support {
     pub mod scenes;
 }
 
+use candor::bound::sample_scale;
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
+use candor::effects::{Effect, Effects};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::{Packed, layout};
+use candor::kernel::{Packed, layout, pack};
+use candor::scene::Scene;
+use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use support::light_scenes::{forty_lights, in_light, joined_lights};
-use support::scenes::packed;
 
 const U: f64 = 1.0 / (1 << 24) as f64;
 
 /// Chance that a correct kernel fails the test in distribution.
 const FAMILY: f64 = 1e-6;
+
+/// The scene with the tree that the probe knows besides the scan.
+fn packed(scene: &Scene) -> Packed {
+    let viewpoint = Viewpoint::of(scene);
+    let effects = Effects::of(scene, &viewpoint).with(Effect::LightTree);
+    pack(scene, &viewpoint, effects, sample_scale(scene))
+}
 
 /// A point that asks for a light.
 #[derive(Debug, Clone, Copy)]
@@ -57,13 +67,13 @@ fn points(packed: &Packed, count: usize) -> Vec<Point> {
 }
 
 fn lights(packed: &Packed) -> Vec<layout::Sphere> {
-    packed.light_places().iter().map(|&place| packed.scene.spheres[place as usize]).collect()
+    packed.lights.iter().map(|&place| packed.spheres[place as usize]).collect()
 }
 
 /// What the device answers: the chance asked for, the light picked and its chance.
 fn ask(packed: &Packed, questions: &[(Point, u32)]) -> Vec<(f32, u32, f32)> {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &packed.scene).expect("the probe compiles");
+    let probe = Probe::new(&gpu, packed).expect("the probe compiles");
     let row = |v: Vec3, w: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w];
     let rows: Vec<Row> = questions
         .iter()
@@ -115,7 +125,7 @@ fn chances_are_those_of_the_bound_and_none_is_small() {
         let (points, count) = (points(&packed, 2000), lights.len());
         let questions: Vec<(Point, u32)> = points
             .iter()
-            .flat_map(|&p| packed.light_places().iter().map(move |&light| (p, light)))
+            .flat_map(|&p| packed.lights.iter().map(move |&light| (p, light)))
             .collect();
         let found = ask(&packed, &questions);
         let (mut worst, mut least, mut differ) = (0.0_f64, 1.0_f64, 0);
@@ -135,7 +145,7 @@ fn chances_are_those_of_the_bound_and_none_is_small() {
                     (truth - even).abs() > bound && (truth - proportional).abs() > bound,
                 );
                 // The light that is picked has the chance that it is asked for.
-                let at = packed.light_places().iter().position(|&p| p == picked);
+                let at = packed.lights.iter().position(|&p| p == picked);
                 let of_it = found[at.expect("a light is picked")].0;
                 assert_eq!(of_it.to_bits(), own.to_bits(), "{point:?}: {picked}");
             }
@@ -154,14 +164,14 @@ fn picks_follow_their_chances() {
     let lights = lights(&packed);
     let (points, mut rejected) = (points(&packed, 4), 0);
     for &point in &points {
-        let found = ask(&packed, &vec![(point, packed.light_places()[0]); PICKS]);
+        let found = ask(&packed, &vec![(point, packed.lights[0]); PICKS]);
         let p_value = |expected: Vec<f64>| {
             let cell = |(&place, chance): (&u32, f64)| {
                 let observed = found.iter().filter(|f| f.1 == place).count() as f64;
                 let expected = PICKS as f64 * chance;
                 (observed - expected).powi(2) / expected
             };
-            let sum: f64 = packed.light_places().iter().zip(expected).map(cell).sum();
+            let sum: f64 = packed.lights.iter().zip(expected).map(cell).sum();
             ChiSquared::new(lights.len() as f64 - 1.0).expect("several lights").sf(sum)
         };
         let p = p_value(chances(&lights, &point).into_iter().map(|chance| chance.0).collect());

@@ -1,13 +1,12 @@
 //! Random numbers on the device: the twin's bits, and unit floats that never reach 1.
 
 mod support {
+    pub mod bare;
     pub mod gpu;
 }
 
-use bytemuck::Zeroable;
 use candor::cpu::rng::{pcg4d, unit_float};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
 
 /// The reference of Jarzynski & Olano once more, in 64-bit arithmetic modulo 2³².
 fn pcg4d_in_u64(key: Row) -> Row {
@@ -56,7 +55,7 @@ fn keys() -> Vec<Row> {
 #[test]
 fn pcg4d_gives_the_same_bits_everywhere() {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let known: Vec<Row> = KNOWN.iter().map(|row| row.0).collect();
     let answers: Vec<Row> = KNOWN.iter().map(|row| row.1).collect();
     assert_eq!(probe.run("probe_pcg4d", &known, known.len()).expect("it runs"), answers);
@@ -87,7 +86,7 @@ fn is_unit_float(u: f32, bits: u32) -> bool {
 #[test]
 fn unit_floats_are_exact_and_never_one() {
     let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, &layout::Scene::zeroed()).expect("the probe compiles");
+    let probe = Probe::new(&gpu, &support::bare::nothing()).expect("the probe compiles");
     let patterns = patterns();
     let rows: &[Row] = bytemuck::cast_slice(&patterns);
     let device = probe.run("probe_unit_float", rows, rows.len()).expect("the device runs");

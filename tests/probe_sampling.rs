@@ -8,11 +8,13 @@
 )]
 
 mod support {
+    pub mod bare;
     #[allow(dead_code, reason = "the twin's test rejects its faults")]
     pub mod chi_square;
     #[allow(dead_code, reason = "of all formulas, those of the lobe")]
     pub mod closed_form;
     pub mod gpu;
+    pub mod uniform_probe;
 }
 
 use bytemuck::Zeroable;
@@ -22,10 +24,12 @@ use candor::cpu::sampling::{around, polar_hemisphere, polar_phong};
 use candor::estimate::z_limit;
 use candor::gpu::Gpu;
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
+use candor::kernel::{Packed, layout};
 use glam::{DVec2, DVec3, Vec3};
+use support::bare::bare;
 use support::chi_square::{EXPONENTS, check_samplers};
 use support::closed_form::{lobe_above_horizon, lobe_albedo};
+use support::uniform_probe::uniform_probe;
 
 const U: f64 = 1.0 / (1 << 24) as f64;
 
@@ -47,14 +51,12 @@ struct Event {
 /// Exponents of the surfaces; a diffuse one stands first.
 const SURFACES: [f32; 8] = [-1.0, 0.0, 1.0, 100.0, 1e4, 1e6, 1e7, 1e10];
 
-fn surfaces() -> layout::Scene {
-    let mut scene = layout::Scene::zeroed();
-    for (sphere, exponent) in scene.spheres.iter_mut().zip(SURFACES) {
-        let diffuse = exponent < 0.0;
-        sphere.kind = if diffuse { layout::KIND_DIFFUSE } else { layout::KIND_GLOSSY };
-        sphere.exponent = exponent.max(0.0);
-    }
-    scene
+fn surfaces() -> Packed {
+    let surface = |exponent: f32| {
+        let kind = if exponent < 0.0 { layout::KIND_DIFFUSE } else { layout::KIND_GLOSSY };
+        layout::Sphere { kind, exponent: exponent.max(0.0), ..layout::Sphere::zeroed() }
+    };
+    bare(layout::Scene::zeroed(), SURFACES.map(surface).to_vec())
 }
 
 /// The packed sphere with this exponent.
@@ -73,7 +75,8 @@ impl Device {
     }
 
     fn run(&self, entry: &str, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
-        let probe = Probe::new(&self.gpu, &surfaces()).expect("the probe compiles");
+        let probe = Probe::with_source(&self.gpu, &surfaces(), uniform_probe())
+            .expect("the probe compiles");
         let rows = probe.run(entry, rows, results).expect("the device runs");
         rows.into_iter().map(|row| row.map(f32::from_bits)).collect()
     }

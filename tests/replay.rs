@@ -12,6 +12,7 @@ mod support {
 
 use candor::bound::sample_scale;
 use candor::cpu::{self, PreparedScene, SampleKey};
+use candor::effects::Effects;
 use candor::film::{PixelSums, WORDS};
 use candor::gpu::Replayer;
 use candor::kernel::Kernel;
@@ -174,10 +175,10 @@ fn sample_where(scene: &Scene, asked: impl Fn(&Trail) -> bool) -> (u32, u64) {
 /// twin.
 fn mutated(scene: &Scene, at: (u32, u64), from: &str, to: &str) -> (Trail, Option<Parting>) {
     let (gpu, packed, viewpoint) = (support::gpu::open(), packed(scene), Viewpoint::of(scene));
-    let kernel = Kernel::of(scene, &viewpoint, &packed).replay_wgsl();
+    let kernel = Kernel::of(scene, Effects::of(scene, &viewpoint), &packed).replay_wgsl();
     assert_eq!(kernel.matches(from).count(), 1, "occurrences of {from:?} in the kernel");
     let kernel = kernel.replace(from, to);
-    let replayer = Replayer::with_kernel(scene, &gpu, &packed.scene, &kernel).expect("a kernel");
+    let replayer = Replayer::with_kernel(scene, &gpu, &packed, &kernel).expect("a kernel");
     let trail = replayer.replay(at.0, at.1).expect("a path");
     let parted = parting(&trail, &twin(scene, at.0, at.1), &viewpoint);
     (trail, parted)

@@ -9,7 +9,7 @@ mod support {
     pub mod scenes;
 }
 
-use candor::kernel::{KernelUnits, layout};
+use candor::kernel::{KernelUnits, Packed, layout};
 use candor::scene::Scene;
 use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3, Vec3Swizzles};
@@ -50,9 +50,9 @@ fn near_edge(radius: f64, index: usize) -> DVec3 {
 const DEPTH: f64 = 64.0 * U;
 
 /// Whether a ray ended nowhere, or behind a wall.
-fn is_lost(scene: &layout::Scene, found: &Found) -> bool {
+fn is_lost(scene: &Packed, found: &Found) -> bool {
     let ray = Ray { origin: found.position, direction: Vec3::X, leaving: found.sphere };
-    let walls = (0..scene.sphere_count as usize).map(|place| case(scene, place, &ray));
+    let walls = (0..scene.spheres.len()).map(|place| case(scene, place, &ray));
     let depth = |case: Case| {
         let c = -case.exact().0.c / 2.0;
         if case.anchored { c } else { c / f64::from(case.size) }
@@ -65,23 +65,23 @@ fn is_lost(scene: &layout::Scene, found: &Found) -> bool {
 fn escapes(
     scene: &Scene,
     radius: f64,
-    nearest: &dyn Fn(&layout::Scene, &[Ray]) -> Vec<Found>,
+    nearest: &dyn Fn(&Packed, &[Ray]) -> Vec<Found>,
 ) -> (usize, usize) {
     let packed = packed(scene);
     let units = KernelUnits::of(&Viewpoint::of(scene));
     let aim = |origin: Vec3, index| {
         (units.point(near_edge(radius, index)) - origin.as_dvec3()).normalize()
     };
-    let mut rays = rays(&packed.scene, 1 << 16);
+    let mut rays = rays(&packed, 1 << 16);
     for (index, ray) in rays.iter_mut().enumerate() {
         ray.origin = units.point(on_sphere(draw(index, 6))).as_vec3();
         ray.direction = aim(ray.origin, index).as_vec3();
     }
     let (mut escapes, mut total) = (0, 0);
     for stage in 0..4 {
-        let found = nearest(&packed.scene, &rays);
+        let found = nearest(&packed, &rays);
         total += rays.len();
-        escapes += found.par_iter().filter(|found| is_lost(&packed.scene, found)).count();
+        escapes += found.par_iter().filter(|found| is_lost(&packed, found)).count();
         // Once more into the edges, now along the walls.
         rays = next_rays(&found, if stage == 1 { &aim } else { &anywhere });
     }
@@ -111,7 +111,7 @@ fn no_ray_escapes_from_a_closed_room() {
 
 /// The kernel's anchored form, but a hit must lie ahead, as where rays are kept off
 /// surfaces by an epsilon: points that rounding put into the next wall are lost.
-fn strictly_ahead(scene: &layout::Scene, rays: &[Ray]) -> Vec<Found> {
+fn strictly_ahead(scene: &Packed, rays: &[Ray]) -> Vec<Found> {
     let hit = |ray: &Ray| {
         let mut found = Found {
             distance: MISS,
@@ -119,12 +119,12 @@ fn strictly_ahead(scene: &layout::Scene, rays: &[Ray]) -> Vec<Found> {
             position: Vec3::ZERO,
             normal: Vec3::ZERO,
         };
-        for (place, sphere) in (0..).zip(&scene.spheres[..scene.sphere_count as usize]) {
+        for (place, sphere) in (0..).zip(&scene.spheres) {
             let (m, k) = (Vec3::from_array(sphere.position), sphere.size);
             let g = m + k * ray.origin;
             let (b, c) = (g.dot(ray.direction), (m + g).dot(ray.origin) + 2.0 * sphere.offset);
             let t = c / ((b * b - k * c).max(0.0).sqrt() - b);
-            if place >= scene.factored_count
+            if place >= scene.scene.factored_count
                 && place != ray.leaving
                 && b < 0.0
                 && t > 0.0

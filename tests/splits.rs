@@ -9,15 +9,15 @@ mod support {
     pub mod tracers;
 }
 
-use candor::effects::Effects;
+use candor::effects::Effect;
 use candor::estimate::compare;
 use candor::film::{Film, MAX_SAMPLE_INDEX};
-use candor::kernel::{Kernel, Lights, Nearest, Tile};
+use candor::kernel::Tile;
 use candor::scene::{Estimator, ImageSize, Scene};
 use candor::tracer::Tracer;
 use std::ops::Range;
-use support::scenes::{classic, many, packed, room, size, with_seed};
-use support::tracers::{film, kernel, on_device, twin, with_kernel};
+use support::scenes::{classic, many, room, size, with_seed};
+use support::tracers::{film, general, kernel, on_device, twin, with_effects, with_kernel};
 
 /// Odd, tiny, wide, and whole tiles.
 const SIZES: [(u32, u32); 6] = [(27, 51), (1, 1), (16384, 1), (1, 7), (64, 64), (9, 130)];
@@ -106,17 +106,9 @@ fn the_specialised_kernel_gives_the_general_ones_bits() {
         let settings = scene.settings().with_estimator(estimator);
         let scene = scene.clone().with_settings(settings);
         let special = film(&mut on_device(&scene), &[0..16]);
-        for nearest in [Nearest::Loop, Nearest::Unrolled(packed(&scene).forms)] {
-            let general = Kernel {
-                size: scene.size(),
-                bounces: scene.settings().bounces(),
-                estimator,
-                effects: Effects::ALL,
-                nearest,
-                lights: Lights::Many { huge: true },
-            };
-            let general = film(&mut with_kernel(&scene, &general.wgsl()), &[0..16]);
-            assert!(general == special, "{estimator:?} {:?}", scene.size());
+        for effects in [general(&scene).without(Effect::Hierarchy), general(&scene)] {
+            let general = film(&mut with_effects(&scene, effects), &[0..16]);
+            assert!(general == special, "{estimator:?} {effects:?}");
         }
     }
 }

@@ -1,12 +1,12 @@
 //! Focus, extent and sides: what is decided about a scene before anything is traced.
 
 use candor::bound::sample_scale;
-use candor::effects::Effects;
-use candor::kernel::{Form, KernelUnits, pack};
+use candor::effects::{Effect, Effects};
+use candor::kernel::{KernelUnits, Packed, pack};
 use candor::scene::{
     Albedo, Camera, Exponent, ImageSize, Radiance, RenderSettings, Scene, Sphere, Surface, load,
 };
-use candor::viewpoint::Viewpoint;
+use candor::viewpoint::{Form, Viewpoint};
 use glam::DVec3;
 
 fn white() -> Surface {
@@ -21,6 +21,14 @@ fn scene(position: [f64; 3], look_at: [f64; 3], spheres: Vec<Sphere>) -> Scene {
     let camera = Camera::new(position.into(), look_at.into(), DVec3::Y, 45.0).expect("a camera");
     let size = ImageSize::new(8, 8).expect("a size");
     Scene::new(camera, size, RenderSettings::default(), spheres)
+}
+
+fn effects(scene: &Scene) -> Effects {
+    Effects::of(scene, &Viewpoint::of(scene))
+}
+
+fn packed(scene: &Scene) -> Packed {
+    pack(scene, &Viewpoint::of(scene), effects(scene), sample_scale(scene))
 }
 
 fn classic(wall: f64) -> Scene {
@@ -73,14 +81,14 @@ fn a_camera_on_the_only_sphere_has_it_as_its_extent() {
 #[test]
 fn walls_are_anchored_and_balls_are_factored() {
     let scene = classic(1e5);
-    let packed = pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits");
+    let packed = packed(&scene);
     let walls = 1..6;
     for (i, form) in packed.forms.iter().enumerate() {
         let expected = if walls.contains(&i) { Form::Anchored } else { Form::Factored };
         assert_eq!(*form, expected, "sphere {i}");
     }
     assert_eq!((packed.scene.factored_count, packed.scene.sphere_count), (3, 8));
-    let order: Vec<u32> = packed.scene.spheres[..8].iter().map(|s| s.index).collect();
+    let order: Vec<u32> = packed.spheres.iter().map(|s| s.index).collect();
     assert_eq!(order, [0, 6, 7, 1, 2, 3, 4, 5]);
 }
 
@@ -95,7 +103,7 @@ fn the_packed_scene_does_not_depend_on_where_and_how_large_the_scene_is() {
             sphere(place([0.0, -1024.0, 0.0]), 1020.0 * scale, white()),
         ];
         let scene = scene(place([0.0, 0.0, 8.0]), place([0.0, 0.0, 0.0]), spheres);
-        pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits").scene
+        packed(&scene)
     };
     let reference = build(1.0, 0.0);
     for scale in [2.0_f64.powi(-20), 0.25, 2.0_f64.powi(20)] {
@@ -141,7 +149,7 @@ fn spheres_far_from_where_rays_start_are_factored() {
         let size = ImageSize::new(8, 8).expect("a size");
         let camera = camera.expect("a camera");
         let scene = Scene::new(camera, size, RenderSettings::default(), spheres());
-        let packed = pack(&scene, &Viewpoint::of(&scene), sample_scale(&scene)).expect("it fits");
+        let packed = packed(&scene);
         assert_eq!(packed.forms, [Form::Factored, form], "{distance}, {fov} degrees");
     }
 }
@@ -234,7 +242,7 @@ fn sides_follow_the_camera() {
     let inside = |scene: &Scene| Viewpoint::of(scene).inside().to_vec();
     assert_eq!(inside(&at(5.0)), [true, true, false]);
     assert_eq!(inside(&at(15.0)), [false, true, false]);
-    assert!(Effects::of(&at(5.0), &Viewpoint::of(&at(5.0))).interior);
+    assert!(effects(&at(5.0)).has(Effect::Interior));
 }
 
 /// Standing on a surface, the camera is on the side that it looks to.
@@ -261,14 +269,14 @@ fn effects_are_what_the_surfaces_are() {
         Exponent::new(3.0).expect("an exponent"),
     );
     let lamp = Surface::Emitter(Radiance::new(DVec3::ONE).expect("a radiance"));
-    let effects = |surface| {
+    let of = |surface| {
         let s = scene([0.0, 0.0, 9.0], [0.0; 3], vec![sphere([0.0; 3], 1.0, surface)]);
-        let found = Effects::of(&s, &Viewpoint::of(&s));
-        (found.diffuse, found.glossy, found.interior)
+        let found = effects(&s);
+        [Effect::Diffuse, Effect::Glossy, Effect::Interior].map(|effect| found.has(effect))
     };
-    assert_eq!(effects(white()), (true, false, false));
-    assert_eq!(effects(gloss), (false, true, false));
-    assert_eq!(effects(lamp), (false, false, false));
+    assert_eq!(of(white()), [true, false, false]);
+    assert_eq!(of(gloss), [false, true, false]);
+    assert_eq!(of(lamp), [false, false, false]);
 }
 
 /// §7 of DESIGN.md by hand: 10·(2·0.75)² and the rounding's share, so that the next power

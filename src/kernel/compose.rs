@@ -333,22 +333,34 @@ impl Kernel {
 
 /// The WGSL of the probe: entry points that run single functions of the kernel over a
 /// table of inputs, for the tests.
-///
-/// # Panics
-/// Never: 512×512 is a picture.
 #[must_use]
 pub fn probe_source() -> String {
+    probe(false, 0)
+}
+
+/// The same with a hierarchy in which up to `stack` items wait; spheres and lights are then in
+/// storage buffers.
+#[must_use]
+pub fn hierarchy_probe_source(stack: u32) -> String {
+    probe(true, stack)
+}
+
+fn probe(hierarchy: bool, stack: u32) -> String {
+    let effects = if hierarchy { Effects::ALL } else { Effects::ALL.without(Effect::Hierarchy) };
     let mut text = Kernel {
         size: ImageSize::new(512, 512).expect("a picture"),
         bounces: 2,
         estimator: Estimator::Mis,
-        effects: Effects::ALL.without(Effect::Hierarchy),
+        effects,
         written: None,
-        stored: false,
+        stored: hierarchy,
         light: 0,
-        stack: 0,
+        stack,
     }
     .path();
     text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("probe"));
+    if hierarchy {
+        text.add(fragment!("probe_hierarchy"));
+    }
     text.into_wgsl()
 }

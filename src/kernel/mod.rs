@@ -11,7 +11,7 @@ mod unrolled;
 mod validate;
 mod wide;
 
-pub use compose::{Kernel, UNROLLED_SPHERES, probe_source};
+pub use compose::{Kernel, UNROLLED_SPHERES, hierarchy_probe_source, probe_source};
 pub use layout::SPHERE_CAPACITY;
 pub use pack::{KernelUnits, Packed, pack};
 pub use tile::Tile;

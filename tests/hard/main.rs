@@ -6,6 +6,7 @@ mod rows;
 mod scenes;
 #[path = "../support"]
 mod support {
+    pub mod bare;
     #[allow(dead_code, reason = "of all samplers, the lobe")]
     pub mod chi_square;
     #[allow(dead_code, reason = "each test uses some of the formulas")]
@@ -17,6 +18,7 @@ mod support {
     pub mod rays;
     pub mod scenes;
     pub mod tracers;
+    pub mod uniform_probe;
 }
 
 /// The cases are numbered from 1 to this.

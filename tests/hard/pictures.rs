@@ -4,16 +4,12 @@
 #![expect(clippy::single_range_in_vec_init, reason = "one way of dividing the samples")]
 
 use crate::support::gpu;
-use crate::support::scenes::{
-    classic, diffuse, emitter, glossy, packed, seen, size, sphere, with_seed,
-};
-use crate::support::tracers::{kernel, on_device, trace, twin, with_kernel};
+use crate::support::scenes::{classic, diffuse, emitter, glossy, seen, size, sphere, with_seed};
+use crate::support::tracers::{general, kernel, on_device, trace, twin, with_effects, with_kernel};
 use crate::{Line, Verdict};
-use candor::effects::Effects;
 use candor::estimate::{Summary, compare, pair, summarize};
 use candor::film::{Film, sums};
 use candor::gpu::GpuTracer;
-use candor::kernel::{Kernel, Lights, Nearest};
 use candor::scene::{Camera, Estimator, RenderSettings, Scene, load};
 use candor::verify::{ALPHA, MAX_BIAS};
 use glam::DVec3;
@@ -315,18 +311,10 @@ fn places_and_units() -> impl Iterator<Item = Line> {
 fn left_out() -> Line {
     let scene = classic(size(32, 32));
     let plain = crowd(6, 1, 2);
-    let general = |scene: &Scene| Kernel {
-        size: scene.size(),
-        bounces: scene.settings().bounces(),
-        estimator: scene.settings().estimator(),
-        effects: Effects::ALL,
-        nearest: Nearest::Unrolled(packed(scene).forms),
-        lights: Lights::Many { huge: true },
-    };
     let judge = |change: &dyn Fn(&str) -> String| {
         let same_bits = |scene: &Scene| {
             let special = film_of(scene, &change(&kernel(scene)), &[0..32]);
-            film_of(scene, &general(scene).wgsl(), &[0..32]) == special
+            trace(&mut with_effects(scene, general(scene)), &[0..32]).0 == special
         };
         same(same_bits(&scene) && same_bits(&plain))
     };

@@ -1,14 +1,16 @@
 //! Cases that are rows of a table, through single functions of the kernel on the device.
 
+use crate::support::bare::{bare, nothing};
 use crate::support::chi_square::{lobe_p_value, p_limit};
 use crate::support::gpu;
 use crate::support::hits::{Case, Side};
 use crate::support::rays::{Ray, draw, on_sphere, trace};
 use crate::support::scenes::{diffuse, emitter, packed, seen, size, sphere};
+use crate::support::uniform_probe::uniform_probe;
 use crate::{Line, Verdict};
 use bytemuck::Zeroable;
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
+use candor::kernel::{Packed, layout};
 use glam::{DVec3, Vec3};
 
 /// How far from unit length, or from a right angle, `f32` directions may be.
@@ -17,9 +19,9 @@ const UNIT: f64 = 1e-6;
 /// The largest number that a path can get.
 const LAST: f32 = 1.0 - f32::EPSILON / 2.0;
 
-fn run(entry: &str, scene: &layout::Scene, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
+fn run(entry: &str, scene: &Packed, rows: &[Row], results: usize) -> Vec<[f32; 4]> {
     let gpu = gpu::open();
-    let probe = Probe::new(&gpu, scene).expect("the probe compiles");
+    let probe = Probe::with_source(&gpu, scene, uniform_probe()).expect("the probe compiles");
     let rows = probe.run(entry, rows, results).expect("the device runs");
     rows.into_iter().map(|row| row.map(f32::from_bits)).collect()
 }
@@ -78,7 +80,7 @@ fn tangent_rays() -> Line {
             ]
         })
         .collect();
-    let found = run("probe_hit", &layout::Scene::zeroed(), &rows, cases.len());
+    let found = run("probe_hit", &nothing(), &rows, cases.len());
     let judge = |distances: &mut dyn Iterator<Item = f32>| {
         let judged = cases.iter().zip(distances);
         let wrong = judged.filter(|(case, found)| case.judge(*found).is_none()).count();
@@ -102,9 +104,9 @@ fn far_centre() -> Line {
     let lamp = sphere([0.0, 8.0, 0.0], 1.0, emitter([1.0; 3]));
     let position = DVec3::new(-6.0, 6.0, -5.0);
     let scene = seen(position, DVec3::ZERO, size(1, 1), 1, vec![wall, lamp]);
-    let packed = packed(&scene).scene;
+    let packed = packed(&scene);
     let units = candor::kernel::KernelUnits::of(&candor::viewpoint::Viewpoint::of(&scene));
-    let origin = Vec3::from_array(packed.origin);
+    let origin = Vec3::from_array(packed.scene.origin);
     let ray = |index| {
         let across = 40.0 * toward.cross(on_sphere(draw(index, 1)));
         let direction = (units.point(across) - origin.as_dvec3()).normalize().as_vec3();
@@ -144,7 +146,7 @@ fn nearly_subnormal() -> Line {
         .iter()
         .flat_map(|&r| [row(Vec3::ZERO, 0.0), row(1e4 * Vec3::Y, r), row(Vec3::ZERO, 0.0)])
         .collect();
-    let found = run("probe_cone", &layout::Scene::zeroed(), &rows, radii.len());
+    let found = run("probe_cone", &nothing(), &rows, radii.len());
     // 1 - √(1 - s²) is s²/2 to 1 + s²/4.
     let truth = |r: f32| (f64::from(r) / 1e4).powi(2) / 2.0;
     let worst = |height: &dyn Fn(usize) -> f32| {
@@ -173,7 +175,7 @@ fn narrow_lobes() -> impl Iterator<Item = Line> {
         #[expect(clippy::cast_possible_truncation, reason = "the kernel takes f32")]
         let row = |&[u, v]: &[f32; 2]| [u, v, exponent as f32, 0.0].map(f32::to_bits);
         let rows: Vec<Row> = points.iter().map(row).collect();
-        let found = run("probe_phong", &layout::Scene::zeroed(), &rows, rows.len());
+        let found = run("probe_phong", &nothing(), &rows, rows.len());
         found.into_iter().map(|[x, y, z, _]| Vec3::new(x, y, z).as_dvec3()).collect()
     };
     let by_power = |points: &[[f32; 2]], exponent: f64| {
@@ -200,17 +202,15 @@ fn narrow_lobes() -> impl Iterator<Item = Line> {
 }
 
 /// Glossy surfaces of these exponents; the last one is diffuse.
-fn surfaces(exponents: &[f32]) -> Box<layout::Scene> {
-    let mut scene: Box<layout::Scene> = bytemuck::zeroed_box();
-    for (sphere, &exponent) in scene.spheres.iter_mut().zip(exponents) {
-        (sphere.kind, sphere.exponent) = (layout::KIND_GLOSSY, exponent);
-    }
-    scene.spheres[exponents.len()].kind = layout::KIND_DIFFUSE;
-    scene
+fn surfaces(exponents: &[f32]) -> Packed {
+    let surface = |kind, exponent| layout::Sphere { kind, exponent, ..layout::Sphere::zeroed() };
+    let glossy = exponents.iter().map(|&exponent| surface(layout::KIND_GLOSSY, exponent));
+    let diffuse = surface(layout::KIND_DIFFUSE, 0.0);
+    bare(layout::Scene::zeroed(), glossy.chain([diffuse]).collect())
 }
 
 /// Direction and weight for each (normal, incoming direction, surface, u).
-fn scatter(scene: &layout::Scene, events: &[(Vec3, Vec3, u32, [f32; 2])]) -> Vec<(DVec3, f32)> {
+fn scatter(scene: &Packed, events: &[(Vec3, Vec3, u32, [f32; 2])]) -> Vec<(DVec3, f32)> {
     let rows: Vec<Row> = events
         .iter()
         .flat_map(|&(normal, incoming, surface, [u, v])| {

@@ -99,7 +99,6 @@ fn check_accepted(scene: &Scene) -> bool {
     let viewpoint = Viewpoint::of(scene);
     assert!(viewpoint.focus().is_finite(), "{viewpoint:?}");
     assert!(viewpoint.extent() > 0.0 && viewpoint.extent().is_finite(), "{viewpoint:?}");
-    let _ = Effects::of(scene, &viewpoint);
     let chosen = |one_in: u8| hash.as_bytes()[0].is_multiple_of(one_in);
     if !chosen(COMPOSED_ONE_IN) {
         return true;
@@ -112,8 +111,9 @@ fn check_accepted(scene: &Scene) -> bool {
             continue;
         }
         let scale = bound::sample_scale(&scene);
-        let Ok(packed) = pack(&scene, &viewpoint, scale) else { continue };
-        let kernel = Kernel::of(&scene, &viewpoint, &packed).wgsl();
+        let effects = Effects::of(&scene, &viewpoint);
+        let packed = pack(&scene, &viewpoint, effects, scale);
+        let kernel = Kernel::of(&scene, effects, &packed).wgsl();
         if chosen(TRACED_ONE_IN) {
             if let Err(error) = validate(&kernel) {
                 panic!("{error}");

@@ -4,7 +4,8 @@
 use super::judge::is_exactly;
 use super::light_scenes;
 use super::scenes::{classic, diffuse, emitter, glossy, seen, size, sphere, with_seed};
-use super::tracers::{film, kernel, trace, twin, with_kernel};
+use super::tracers::{film, general, kernel, trace, twin, with_effects, with_kernel};
+use candor::effects::Effect;
 use candor::estimate::pair;
 use candor::film::Film;
 use candor::scene::{Estimator, Scene};
@@ -34,6 +35,11 @@ pub enum Judge {
     Crowd,
     /// The same with glossy surfaces alone, of all exponents.
     Lobes,
+    /// The same under so many lamps that a tree of them is walked.
+    Layer,
+    /// The device's own picture by loops over all spheres, to the bit: among hundreds of them,
+    /// some in the same place.
+    Swarm,
     /// Every sample is one radiance: a shell of dim light, in a scene with a lamp so
     /// bright that the film's words carry.
     Shell,
@@ -104,6 +110,8 @@ impl Judge {
             Self::Lamps => light_scenes::joined_lights(),
             Self::Crowd => light_scenes::forty_lights(),
             Self::Lobes => light_scenes::gloss(),
+            Self::Layer => light_scenes::lamp_layer(300, 4.0),
+            Self::Swarm => light_scenes::swarm(),
             Self::Shell => shell(),
             Self::Coincident => coincident(),
             Self::Divisions => classic(size(3, 2)),
@@ -140,6 +148,11 @@ impl Judge {
                 let pixels = |film: Option<Film>| film.map(|film| film.pixels().to_vec());
                 ours.is_some() && pixels(ours) != pixels(other)
             }
+            Self::Swarm => {
+                let effects = general(&scene).without(Effect::Hierarchy);
+                let loops = film(&mut with_effects(&scene, effects), &[0..16]);
+                valid(&mut tracer, &[0..16]) == Some(loops)
+            }
             _ => {
                 let (found, ledger) = trace(&mut tracer, &[0..256]);
                 let paired = pair(&found, self.twin(estimator));
@@ -150,7 +163,7 @@ impl Judge {
 
     /// The twin's film of this scene, traced once.
     fn twin(self, estimator: Estimator) -> &'static Film {
-        static FILMS: [[OnceLock<Film>; 4]; 13] = [const { [const { OnceLock::new() }; 4] }; 13];
+        static FILMS: [[OnceLock<Film>; 4]; 15] = [const { [const { OnceLock::new() }; 4] }; 15];
         let scene = self.scene_under(estimator);
         FILMS[self as usize][estimator as usize].get_or_init(|| film(&mut twin(&scene), &[0..256]))
     }

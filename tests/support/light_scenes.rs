@@ -181,3 +181,29 @@ pub fn lamp_layer(count: u32, decades: f64) -> Scene {
     spheres.extend((0..count).map(lamp));
     picture([0.0, 1.4, 3.6], [0.0, 0.0, 1.2], 2, spheres)
 }
+
+/// Hundreds of balls of all kinds and sizes, some inside one another, two lamps among them, and
+/// some in one place but for less than the device's coordinates tell: balls in each other, and
+/// a lamp with a ball before it and one behind it in the file.
+pub fn swarm() -> Scene {
+    let ball = |index| {
+        let key = SampleKey { pixel: 6, index };
+        let [x, y, z, size] = random_bits(key, 0, 0).map(unit_float);
+        let place = DVec3::new(6.0 * x - 3.0, 3.0 * y, 6.0 * z - 4.0);
+        let tint = [0.9, 0.3 + 0.3 * (index % 3) as f64, 0.8];
+        let surface = if index % 4 == 0 { glossy(0.8, 5.0) } else { colored(tint) };
+        sphere(place, 0.03 * 12_f64.powf(size * size), surface)
+    };
+    let shell = |i: u32, surface| sphere([0.5, 1.5, 1.5], 0.6 - 1e-10 * f64::from(i), surface);
+    let mut spheres = vec![floor(), sphere([0.0, 6.0, 0.0], 1.0, emitter([9.0, 8.0, 7.0]))];
+    spheres.extend((0..200).map(ball));
+    spheres.extend((0..9).map(|i| shell(i, colored([0.9, 0.1 * f64::from(i), 0.5]))));
+    let hidden = |i: u32, surface| sphere([-1.5, 3.5, 1.0], 0.5 - 1e-10 * f64::from(i), surface);
+    spheres.push(hidden(0, diffuse(0.5)));
+    spheres.push(hidden(1, emitter([5.0, 9.0, 5.0])));
+    let seen = |i: u32, surface| sphere([1.5, 3.5, 1.0], 0.5 - 1e-10 * f64::from(i), surface);
+    spheres.push(seen(0, emitter([5.0, 5.0, 9.0])));
+    spheres.push(seen(1, diffuse(0.5)));
+    spheres.extend((200..400).map(ball));
+    picture([0.0, 3.0, 8.0], [0.0, 1.2, 0.0], 2, spheres)
+}

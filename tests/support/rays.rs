@@ -6,7 +6,7 @@ use super::gpu;
 use super::hits::{Case, Side};
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::layout;
+use candor::kernel::{Packed, layout};
 use glam::{DVec3, Vec3};
 
 /// The distance of what is not hit.
@@ -28,7 +28,7 @@ pub struct Found {
     pub normal: Vec3,
 }
 
-pub fn trace(scene: &layout::Scene, rays: &[Ray]) -> Vec<Found> {
+pub fn trace(scene: &Packed, rays: &[Ray]) -> Vec<Found> {
     let gpu = gpu::open();
     let probe = Probe::new(&gpu, scene).expect("the probe compiles");
     let bits = |v: Vec3| v.to_array().map(f32::to_bits);
@@ -60,11 +60,11 @@ pub fn on_sphere([z, turn, ..]: [f64; 4]) -> DVec3 {
 }
 
 /// The ray against one packed sphere.
-pub fn case(scene: &layout::Scene, place: usize, ray: &Ray) -> Case {
+pub fn case(scene: &Packed, place: usize, ray: &Ray) -> Case {
     let sphere = &scene.spheres[place];
     Case {
         radius: f64::NAN,
-        anchored: place >= scene.factored_count as usize,
+        anchored: place >= scene.scene.factored_count as usize,
         side: Side::Entry,
         origin: ray.origin,
         direction: ray.direction,
@@ -75,14 +75,14 @@ pub fn case(scene: &layout::Scene, place: usize, ray: &Ray) -> Case {
 }
 
 /// Rays from random points around the focus that lie in no sphere.
-pub fn rays(scene: &layout::Scene, count: usize) -> Vec<Ray> {
+pub fn rays(scene: &Packed, count: usize) -> Vec<Ray> {
     let ray = |index| {
         let [x, y, z, _] = draw(index, 1);
         let origin = 2.0 * DVec3::new(x, y, z) - 1.0;
         let direction = on_sphere(draw(index, 2));
         Ray { origin: origin.as_vec3(), direction: direction.as_vec3(), leaving: layout::NO_SPHERE }
     };
-    let spheres = 0..scene.sphere_count as usize;
+    let spheres = 0..scene.spheres.len();
     let is_free =
         |ray: &Ray| spheres.clone().all(|place| case(scene, place, ray).exact().0.c > 0.0);
     (0..).map(ray).filter(is_free).take(count).collect()
