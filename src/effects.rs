@@ -6,7 +6,7 @@ use crate::viewpoint::{Form, Viewpoint};
 
 /// Scenes with more small spheres than this get a hierarchy over them; for fewer, going
 /// through all of them is faster (BENCHMARKS.md, "From one sphere to a million").
-pub const HIERARCHY_FROM: usize = 100;
+pub const HIERARCHY_FROM: usize = 64;
 
 /// Something that a kernel can simulate, or that a scene may need it to handle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

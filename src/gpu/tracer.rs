@@ -50,7 +50,8 @@ impl GpuTracer {
     /// # Errors
     /// If scene or picture do not fit the device.
     pub fn new(scene: &Scene, gpu: Gpu) -> Result<Self, TraceError> {
-        Self::with_effects(scene, gpu, Effects::of(scene, &Viewpoint::of(scene)))
+        let viewpoint = Viewpoint::of(scene);
+        Self::seen_from(&viewpoint, scene, gpu, Effects::of(scene, &viewpoint))
     }
 
     /// The same with a kernel for more effects than the scene calls for.
@@ -58,7 +59,16 @@ impl GpuTracer {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_effects(scene: &Scene, gpu: Gpu, effects: Effects) -> Result<Self, TraceError> {
-        let packed = kernel::pack(scene, &Viewpoint::of(scene), effects, sample_scale(scene));
+        Self::seen_from(&Viewpoint::of(scene), scene, gpu, effects)
+    }
+
+    fn seen_from(
+        viewpoint: &Viewpoint,
+        scene: &Scene,
+        gpu: Gpu,
+        effects: Effects,
+    ) -> Result<Self, TraceError> {
+        let packed = kernel::pack(scene, viewpoint, effects, sample_scale(scene));
         check_iterations(scene, effects, &packed)?;
         Self::with_kernel(scene, gpu, &packed, &Kernel::of(scene, effects, &packed).wgsl())
     }
