@@ -28,7 +28,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<u8, Refusal> {
         None
     };
     let versions = [Version::specialised(&scene), Version::general(&scene)];
-    let explanation = Explanation::of(&scene, &versions[0], &versions[1]).or_else(refuse)?;
+    let explanation = Explanation::of(&scene, &versions[0], &versions[1]).or_else(mistake)?;
     let measurement = match &chosen {
         Some(Chosen::Adapter(adapter)) => {
             match measured(args, &scene, &source, [&versions[0], &versions[1]], adapter) {
@@ -78,6 +78,10 @@ impl Measurement {
     }
 }
 
+fn mistake<T>(message: impl std::fmt::Display) -> Result<T, Refusal> {
+    refuse(format_args!("this is a mistake in candor: naga refuses the kernel: {message}"))
+}
+
 /// The kernel itself and nothing else.
 fn print_kernel(scene: &Scene, binary: bool) -> Result<u8, Refusal> {
     let wgsl = Version::specialised(scene).kernel.wgsl();
@@ -89,7 +93,7 @@ fn print_kernel(scene: &Scene, binary: bool) -> Result<u8, Refusal> {
              or into a disassembler (--spirv | spirv-dis)",
         );
     } else {
-        let words = spirv(&wgsl).or_else(refuse)?;
+        let words = spirv(&wgsl).or_else(mistake)?;
         streams::binary(bytemuck::cast_slice(&words))?;
     }
     Ok(DONE)

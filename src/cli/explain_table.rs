@@ -132,7 +132,7 @@ fn findings(device: &Description, measured: &Measured) -> String {
             "measured",
             &format!(
                 "{rounds} rounds in turns at {width}x{height}, {spp} samples per pixel: medians \
-                 with 95 % intervals; {compilations} fresh compilations up to the end of the \
+                 with 95\u{a0}% intervals; {compilations} fresh compilations up to the end of the \
                  first dispatch: medians with extremes"
             ),
         ),
@@ -177,7 +177,7 @@ fn saving(measured: &Measured) -> String {
     }
 }
 
-/// Text in lines that begin after `indent` characters.
+/// Text in lines that begin after `indent` characters; no line ends at a no-break space.
 fn wrapped(text: &str, indent: usize) -> String {
     let mut lines: Vec<String> = vec![" ".repeat(indent)];
     for word in text.split(' ') {
@@ -190,5 +190,5 @@ fn wrapped(text: &str, indent: usize) -> String {
             line.push_str(word);
         }
     }
-    lines.join("\n")
+    lines.join("\n").replace('\u{a0}', " ")
 }

@@ -192,7 +192,7 @@ impl Explanation {
     /// Explains the kernels of a scene.
     ///
     /// # Errors
-    /// If naga refuses one of them, which is a mistake in candor.
+    /// naga's message if it refuses one of them, which is a mistake in candor.
     pub fn of(scene: &Scene, specialised: &Version, general: &Version) -> Result<Self, String> {
         let viewpoint = Viewpoint::of(scene);
         Ok(Self {
