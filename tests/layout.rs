@@ -279,6 +279,7 @@ fn scene_of_distinct_words(stored: bool) -> Packed {
         lights: distinct(spheres, 0x3fa0_0000),
         nodes: if stored { distinct(300, 0x3fb0_0000) } else { Vec::new() },
         stack: 1,
+        turns: 1,
         light_tree: distinct(300, 0x3fc0_0000),
         forms: Vec::new(),
     }
