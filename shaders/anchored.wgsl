@@ -9,7 +9,3 @@ fn anchored(ray: Ray, gradient: vec3<f32>, offset: f32, curvature: f32) -> Quadr
     let b = dot(g, ray.direction);
     return Quadratic(b, c, b * b - curvature * c, curvature);
 }
-
-fn closer_anchored(best: Hit, ray: Ray, s: Shape, i: u32, leaving: u32) -> Hit {
-    return closer(best, anchored(ray, s.position, s.offset, s.size), i, leaving);
-}

@@ -9,7 +9,3 @@ fn factored(ray: Ray, centre: vec3<f32>, radius: f32) -> Quadratic {
     let l = f - b * ray.direction;
     return Quadratic(b, dot(f, f) - radius * radius, radius * radius - dot(l, l), 1.0);
 }
-
-fn closer_factored(best: Hit, ray: Ray, s: Shape, i: u32, leaving: u32) -> Hit {
-    return closer(best, factored(ray, s.position, s.size), i, leaving);
-}

@@ -6,10 +6,3 @@ fn pick_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     }
     return scan_for_light(point, key, bounce);
 }
-
-fn chance_of(light: u32, point: SurfacePoint) -> f32 {
-    if scene.light_count > SCANNED_LIGHTS {
-        return chance_in_tree(light, point);
-    }
-    return chance_in_scan(light, point);
-}

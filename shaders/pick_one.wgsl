@@ -9,7 +9,3 @@ struct Pick {
 fn pick_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     return Pick(LIGHT, 1.0);
 }
-
-fn chance_of(light: u32, point: SurfacePoint) -> f32 {
-    return 1.0;
-}

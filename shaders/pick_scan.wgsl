@@ -43,7 +43,3 @@ fn scan_for_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     unfinished = unfinished || pick.light == NO_SPHERE;
     return pick;
 }
-
-fn chance_in_scan(light: u32, point: SurfacePoint) -> f32 {
-    return chance_among(potential(light, point), total_potential(point));
-}

@@ -90,9 +90,3 @@ fn walk_for_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
     let walk = walk_to(select(0u, leaf, (bits.x >> 31u) == 1u), point, bits);
     return Pick(light_tree[walk.node].light, with_even_half(walk.chance));
 }
-
-// A light has no exponent; the number of its leaf is there.
-fn chance_in_tree(light: u32, point: SurfacePoint) -> f32 {
-    let leaf = u32(spheres[light].exponent);
-    return with_even_half(walk_to(leaf, point, vec4<u32>(0u)).chance);
-}

@@ -196,17 +196,16 @@ impl Kernel {
 
     /// What a ray meets.
     fn hits(&self, text: &mut Text) {
-        text.add(fragment!("sphere"));
-        if self.effects.has(Effect::Interior) {
-            text.add(fragment!("exit")).add(fragment!("interior"));
-        } else {
-            text.add(fragment!("exterior"));
+        let (factored, anchored) =
+            (self.effects.has(Effect::Factored), self.effects.has(Effect::Anchored));
+        text.add(fragment!("sphere")).add(fragment!("nearest"));
+        if factored || anchored {
+            text.add(fragment!("entry"));
         }
-        text.add(fragment!("nearest"));
-        if self.effects.has(Effect::Factored) {
+        if factored {
             text.add(fragment!("factored"));
         }
-        if self.effects.has(Effect::Anchored) {
+        if anchored {
             text.add(fragment!("anchored"));
         }
         if self.effects.has(Effect::Hierarchy) {
@@ -274,10 +273,12 @@ impl Kernel {
         });
         self.pick(text);
         search::occluded(text, self.effects, self.written.as_deref(), self.only_light());
-        text.add(match self.estimator {
-            Estimator::Mis => fragment!("strategy_mis"),
-            _ => fragment!("strategy_explicit"),
-        });
+        if self.estimator == Estimator::Mis {
+            self.chance(text);
+            text.add(fragment!("strategy_mis"));
+        } else {
+            text.add(fragment!("strategy_explicit"));
+        }
     }
 
     /// What the direction to a light is worth; glossy surfaces are no place for `explicit` to
@@ -326,6 +327,24 @@ impl Kernel {
             (true, true) => fragment!("pick_by_either"),
             (false, true) => fragment!("pick_by_walk"),
             (_, false) => fragment!("pick_by_scan"),
+        });
+    }
+
+    /// The chance that a light would have been picked which the path hits by itself: `mis`
+    /// weighs that light by it.
+    fn chance(&self, text: &mut Text) {
+        let (scan, tree) = self.picks();
+        if scan {
+            text.add(fragment!("chance_in_scan"));
+        }
+        if tree {
+            text.add(fragment!("chance_in_tree"));
+        }
+        text.add(match (scan, tree) {
+            (true, true) => fragment!("chance_by_either"),
+            (false, true) => fragment!("chance_by_walk"),
+            (true, false) => fragment!("chance_by_scan"),
+            (false, false) => fragment!("chance_one"),
         });
     }
 

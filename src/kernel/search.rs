@@ -21,14 +21,34 @@ fn groups(effects: Effects) -> Vec<&'static str> {
     groups.into_iter().filter_map(|(is_there, name)| is_there.then_some(name)).collect()
 }
 
+/// What is asked of a single sphere, in those groups that no hierarchy holds.
+fn one_by_one(text: &mut Text, effects: Effects, groups: &[&str]) {
+    if groups.iter().all(|&group| group == "hierarchy") {
+        return;
+    }
+    if effects.has(Effect::Interior) {
+        text.add(fragment!("exit")).add(fragment!("interior"));
+    } else {
+        text.add(fragment!("exterior"));
+    }
+    text.add(fragment!("closer"));
+    if groups.contains(&"factored") {
+        text.add(fragment!("closer_factored"));
+    }
+    if groups.contains(&"anchored") {
+        text.add(fragment!("closer_anchored"));
+    }
+}
+
 /// `nearest`: the sphere that a ray meets first. Whichever group it is in, at equal distances
 /// the first in the scene file is met.
 pub(super) fn nearest(text: &mut Text, effects: Effects, written: Option<&[Form]>) {
+    let groups = groups(effects);
+    one_by_one(text, effects, &groups);
     if let Some(forms) = written {
         text.push(unrolled::nearest(forms));
         return;
     }
-    let groups = groups(effects);
     for group in &groups {
         text.add(match *group {
             "hierarchy" => fragment!("nearest_hierarchy"),

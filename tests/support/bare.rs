@@ -10,6 +10,7 @@ pub fn bare(scene: layout::Scene, spheres: Vec<layout::Sphere>) -> Packed {
         lights: Vec::new(),
         nodes: Vec::new(),
         stack: 0,
+        turns: 0,
         light_tree: Vec::new(),
         forms: Vec::new(),
     }
