@@ -1,11 +1,5 @@
 // What a direction is worth at a glossy surface.
 
-// exp(-x) for x in [0, 80]; beyond, less than 2^-115, which counts as 0.
-fn exp_minus(x: f32) -> f32 {
-    let e = exponential_minus(min(x, 80.0));
-    return select(e.power + e.power * e.rest, 0.0, x > 80.0);
-}
-
 // Phong lobe: cosⁿα = exp(n·log(1 - t)) with t = 1 - cosα = |mirror - direction|²/2, as
 // cosα from a dot product has no digits left for large n.
 fn evaluate_glossy(

@@ -3,10 +3,9 @@
 
 use crate::options::open;
 use crate::wgsl::MATH;
-use bytemuck::Zeroable;
 use candor::gpu::probe::{Probe, Row};
 use candor::gpu::{Adapter, Gpu};
-use candor::kernel::layout;
+use candor::kernel::Packed;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::io::Write;
@@ -235,7 +234,7 @@ pub fn measure(adapter: &Adapter) -> Vec<Measured> {
 fn worst(gpu: &Gpu, function: &Function) -> (Worst, Worst) {
     let ways = [function.own.as_ref().unwrap_or(&function.built_in), &function.built_in];
     let probes = ways.map(|way| {
-        Probe::with_source(gpu, &layout::Scene::zeroed(), text(way)).expect("the device takes it")
+        Probe::with_source(gpu, &Packed::default(), text(way)).expect("the device takes it")
     });
     let larger = |a: (Worst, Worst), b: (Worst, Worst)| (a.0.or(b.0), a.1.or(b.1));
     function.words.clone().step_by(CHUNK as usize).fold(Default::default(), |worst, first| {

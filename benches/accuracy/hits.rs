@@ -3,11 +3,10 @@
 use crate::options::open;
 use crate::rays::{Case, Plan, Side, plans};
 use crate::wgsl::with_body;
-use bytemuck::Zeroable;
 use candor::cpu::sphere::{MISS, Ray, entry, factored};
 use candor::gpu::Adapter;
 use candor::gpu::probe::{Probe, Row};
-use candor::kernel::{layout, probe_source};
+use candor::kernel::{Packed, probe_source};
 use glam::{DVec3, Vec3};
 
 pub const RADII: [f64; 4] = [1.0, 1e3, 1e5, 1e7];
@@ -42,7 +41,7 @@ pub fn textbook(wgsl: &str) -> String {
 pub fn measure(adapter: &Adapter) -> Table {
     let gpu = open(adapter);
     let probe = |wgsl: String| {
-        Probe::with_source(&gpu, &layout::Scene::zeroed(), wgsl).expect("the device takes it")
+        Probe::with_source(&gpu, &Packed::default(), wgsl).expect("the device takes it")
     };
     let (kernel, textbook) = (probe(probe_source()), probe(textbook(&probe_source())));
     let of = |form: Form, radius: f64| {

@@ -7,11 +7,12 @@ use crate::turns::{self, Measure, Middle, above};
 use crate::wgsl::with_body;
 use candor::bound::sample_scale;
 use candor::cpu::CpuTracer;
+use candor::effects::{Effect, Effects};
 use candor::gpu::{Adapter, GpuTracer};
-use candor::kernel::{Form, Kernel, KernelUnits, Packed, layout, pack};
+use candor::kernel::{Kernel, KernelUnits, Packed, layout, pack};
 use candor::scene::{Estimator, Scene, parse};
 use candor::tracer::Tracer;
-use candor::viewpoint::Viewpoint;
+use candor::viewpoint::{Form, Viewpoint};
 use glam::DVec3;
 use std::time::Instant;
 
@@ -64,8 +65,9 @@ fn classic(radius: f64) -> Scene {
 
 fn packed(scene: &Scene) -> (Packed, String) {
     let viewpoint = Viewpoint::of(scene);
-    let packed = pack(scene, &viewpoint, sample_scale(scene)).expect("few spheres");
-    let wgsl = Kernel::of(scene, &viewpoint, &packed).wgsl();
+    let effects = Effects::of(scene, &viewpoint);
+    let packed = pack(scene, &viewpoint, effects, sample_scale(scene));
+    let wgsl = Kernel::of(scene, effects, &packed).wgsl();
     (packed, wgsl)
 }
 
@@ -97,7 +99,7 @@ fn measure_estimator(adapter: &Adapter, rounds: u64, estimator: Estimator, error
             .copied()
             .flatten()
             .fold(kernel.clone(), |wgsl, (function, body)| with_body(&wgsl, function, body));
-        let tracer = GpuTracer::with_kernel(&scene, open(adapter), &packed.scene, &wgsl);
+        let tracer = GpuTracer::with_kernel(&scene, open(adapter), &packed, &wgsl);
         Rung::new(name, tracer.expect("the device takes the kernel"), &scene, SPP)
     };
     let mut rungs = [
@@ -144,9 +146,9 @@ fn by_centre(scene: &Scene, packed: &Packed) -> Packed {
     let units = KernelUnits::of(&Viewpoint::of(scene));
     let mut centred = packed.clone();
     for (place, sphere) in scene.spheres().iter().enumerate() {
-        let mut old = packed.scene.spheres.iter();
+        let mut old = packed.spheres.iter();
         let old = old.find(|old| old.index as usize == place).expect("every sphere is packed");
-        centred.scene.spheres[place] = layout::Sphere {
+        centred.spheres[place] = layout::Sphere {
             position: floats(units.point(sphere.center())),
             size: floats(DVec3::splat(units.length(sphere.radius())))[0],
             offset: 0.0,
@@ -156,7 +158,7 @@ fn by_centre(scene: &Scene, packed: &Packed) -> Packed {
     centred.scene.factored_count = centred.scene.sphere_count;
     centred.forms.fill(Form::Factored);
     // The lamp is the first sphere of the file, here as in the packed scene.
-    assert_eq!(centred.scene.spheres[0].kind, layout::KIND_EMITTER);
+    assert_eq!(centred.spheres[0].kind, layout::KIND_EMITTER);
     centred
 }
 
@@ -170,9 +172,10 @@ pub fn measure_forms(adapter: &Adapter, rounds: u64, errors: &Table) {
     let scene = classic(1e2);
     let (packed, kernel) = packed(&scene);
     let centred = by_centre(&scene, &packed);
-    let factored = Kernel::of(&scene, &Viewpoint::of(&scene), &centred).wgsl();
+    let effects = Effects::of(&scene, &Viewpoint::of(&scene)).without(Effect::Anchored);
+    let factored = Kernel::of(&scene, effects, &centred).wgsl();
     let rung = |name, packed: &Packed, wgsl: &str| {
-        let tracer = GpuTracer::with_kernel(&scene, open(adapter), &packed.scene, wgsl);
+        let tracer = GpuTracer::with_kernel(&scene, open(adapter), packed, wgsl);
         Rung::new(name, tracer.expect("the device takes the kernel"), &scene, SPP)
     };
     let twin = CpuTracer::new(&scene, None).expect("threads");

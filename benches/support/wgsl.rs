@@ -5,8 +5,17 @@
 use candor::gpu::Gpu;
 use std::time::Instant;
 
-pub const MATH: &str = include_str!("../../shaders/math.wgsl");
-pub const SPHERE: &str = include_str!("../../shaders/sphere.wgsl");
+pub const MATH: &str = concat!(
+    include_str!("../../shaders/azimuth.wgsl"),
+    include_str!("../../shaders/exponential.wgsl"),
+    include_str!("../../shaders/exp_minus.wgsl")
+);
+pub const SPHERE: &str = concat!(
+    include_str!("../../shaders/sphere.wgsl"),
+    include_str!("../../shaders/entry.wgsl"),
+    include_str!("../../shaders/factored.wgsl"),
+    include_str!("../../shaders/anchored.wgsl")
+);
 
 /// The text with another body for a function.
 ///

@@ -291,7 +291,7 @@ impl Kernel {
             text.add(fragment!("worth_diffuse"));
         }
         if glossy {
-            text.add(fragment!("worth_glossy"));
+            text.add(fragment!("exp_minus")).add(fragment!("worth_glossy"));
         }
         text.add(match (diffuse, glossy) {
             (true, true) => fragment!("evaluate_both"),

@@ -43,7 +43,7 @@ pub struct Sphere {
 }
 
 /// The scene but for its spheres.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Scene {
     /// Where the camera's axis starts, in kernel units: at the camera, or `approach` before it.

@@ -40,7 +40,7 @@ impl KernelUnits {
 }
 
 /// A packed scene.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Packed {
     /// What goes into the uniform buffer.
     pub scene: layout::Scene,
