@@ -393,16 +393,17 @@ fn agrees(packed: &Packed, ray: &Ray, found: Hit, twin: Option<u32>) -> bool {
     is_there && is_first
 }
 
-/// Beyond what one loop of the device goes through: against its loops over pieces, and against
-/// the twin.
+/// Beyond what one loop of the device goes through: against its loops over pieces, for some of
+/// the rays, and against the twin.
 #[test]
 fn a_million_spheres_are_searched_as_by_a_loop() {
-    for count in [100_000, 1_000_000] {
+    for (count, looped) in [(100_000, 480), (1_000_000, 96)] {
         let scene = volume::scene(count, size(8, 8));
         let packed = under_hierarchy(&scene);
         // From farther away, padding would have a ray meet more boxes than a loop may look at.
         let rays = rays(&packed, 96, 64.0);
-        assert_eq!(differences(&packed, text(&packed), &rays), [0, 0], "of {} rays", rays.len());
+        // A loop takes its time.
+        assert_eq!(differences(&packed, text(&packed), &rays[..looped]), [0, 0], "{count}");
         let gpu = gpu::open();
         let found = Device::new(&gpu, &packed, text(&packed)).nearest(&rays);
         let twin = by_twin(&scene, &packed, &rays);
