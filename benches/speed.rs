@@ -14,8 +14,9 @@ mod turns;
 
 use candor::bound::sample_scale;
 use candor::cpu::CpuTracer;
+use candor::effects::Effects;
 use candor::gpu::{Adapter, GpuTracer};
-use candor::kernel::{self, Kernel, Nearest};
+use candor::kernel::{self, Kernel};
 use candor::scene::{self, Estimator, ImageSize, Scene};
 use candor::tracer::Tracer;
 use candor::viewpoint::Viewpoint;
@@ -95,11 +96,11 @@ fn rows(scene: &Scene, adapter: &Adapter) -> Vec<Row> {
     let gpu = || options::open(adapter);
     let small = scene.clone().with_size(ImageSize::new(16, 16).expect("a size"));
     let viewpoint = Viewpoint::of(scene);
-    let packed = kernel::pack(scene, &viewpoint, sample_scale(scene)).expect("it fits");
-    let kernel = Kernel::of(scene, &viewpoint, &packed);
-    let with =
-        |wgsl: &str| GpuTracer::with_kernel(scene, gpu(), &packed.scene, wgsl).expect("a tracer");
-    let looped = Kernel { nearest: Nearest::Loop, ..kernel.clone() };
+    let effects = Effects::of(scene, &viewpoint);
+    let packed = kernel::pack(scene, &viewpoint, effects, sample_scale(scene));
+    let kernel = Kernel::of(scene, effects, &packed);
+    let with = |wgsl: &str| GpuTracer::with_kernel(scene, gpu(), &packed, wgsl).expect("a tracer");
+    let looped = kernel.clone().looped();
     vec![
         Row::new("512x512, exact film", GpuTracer::new(scene, gpu()).expect("fits"), scene, SPP),
         Row::new("512x512, plain f32 sum", with(&plain_sum(&kernel.wgsl())), scene, SPP),

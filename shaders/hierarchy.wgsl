@@ -1,6 +1,6 @@
 // Spheres found through a hierarchy of boxes, four to a node. A box holds a little more than
 // its spheres, and a ray meets it with a little more room, so that no hit is lost that going
-// through all spheres would find (DESIGN.md, "The hierarchy"): the hits are the same, to the
+// through all spheres would find (DESIGN.md, "Many spheres"): the hits are the same, to the
 // bit. Only spheres in factored form that do not hold the camera are under it.
 
 // Up to four children and their boxes on a grid.
@@ -18,25 +18,27 @@ struct Node {
 
 @group(0) @binding(8) var<storage, read> nodes: array<Node>;
 
-// A ray as boxes are met with it: t = inverse·(plane - origin), widened by `pad` on both sides.
+// A ray as boxes are met with it: t = inverse·(plane - origin).
 struct Climber {
     inverse: vec3<f32>,
     origin: vec3<f32>,
-    pad: vec3<f32>,
+    // The largest coordinate of the origin.
+    size: f32,
 }
 
 // By how much of its coordinates a ray may pass a box and still hit a sphere in it: 256u.
 const PAD: f32 = 1.52587890625e-5;
 
 // A direction of zero would give 0·∞.
-const STEEPEST: f32 = 1.0e-20;
+const STEEPEST: f32 = 1.0e-12;
 
 fn climber(ray: Ray) -> Climber {
     let d = select(ray.direction, vec3<f32>(STEEPEST), abs(ray.direction) < vec3<f32>(STEEPEST));
-    let o = abs(ray.origin);
-    let inverse = 1.0 / d;
-    let room = PAD * (max(max(o.x, o.y), o.z) + scene.reach);
-    return Climber(inverse, ray.origin, room * abs(inverse));
+    return Climber(1.0 / d, ray.origin, largest(ray.origin));
+}
+
+fn largest(v: vec3<f32>) -> f32 {
+    return max(max(abs(v.x), abs(v.y)), abs(v.z));
 }
 
 // What is to be looked at: a node or spheres, as (place << 4) | kind.
@@ -81,6 +83,9 @@ fn bytes(word: u32) -> vec4<f32> {
     return vec4<f32>((vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u));
 }
 
+// Steps of a node's grid.
+const GRID: f32 = 255.0;
+
 const NOT_MET: u32 = 0xffffffffu;
 
 // Where a ray enters each child, as bits that grow with the distance, the number of the child
@@ -92,8 +97,9 @@ fn entries(node: Node, climber: Climber, limit: f32) -> vec4<u32> {
     let ahead = climber.inverse >= vec3<f32>(0.0);
     let near = select(node.high, node.low, ahead);
     let far = select(node.low, node.high, ahead);
-    let near_base = base - climber.pad;
-    let far_base = base + climber.pad;
+    let room = PAD * (climber.size + largest(node.origin) + GRID * step) * abs(climber.inverse);
+    let near_base = base - room;
+    let far_base = base + room;
     let enter = max(
         max(bytes(near.x) * scale.x + near_base.x, bytes(near.y) * scale.y + near_base.y),
         max(bytes(near.z) * scale.z + near_base.z, vec4<f32>(0.0)));

@@ -222,7 +222,6 @@ fn probe_echo_scene(@builtin(global_invocation_id) id: vec3<u32>) {
     outputs[4] = vec4<u32>(
         scene.sphere_count, scene.light_count, bitcast<u32>(scene.approach),
         scene.hierarchy_count);
-    outputs[5] = vec4<u32>(bitcast<u32>(scene.reach), 0u, 0u, 0u);
 }
 
 // The same of the spheres, three results each.

@@ -49,8 +49,6 @@ struct Scene {
     // How far along the view axis rays start, where the camera is far away.
     approach: f32,
     hierarchy_count: u32,
-    // No coordinate of the hierarchy's boxes is larger.
-    reach: f32,
 }
 
 struct Dispatch {

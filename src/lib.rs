@@ -4,7 +4,8 @@
 //!
 //! [`scene`] → [`viewpoint`] → [`hierarchy`], [`light_tree`] → [`effects`], [`bound`], [`range`] →
 //! [`film`] → [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) →
-//! [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`report`] → [`cli`]
+//! [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`explain`] → [`report`] →
+//! [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and
@@ -16,6 +17,7 @@ pub mod cost;
 pub mod cpu;
 pub mod effects;
 pub mod estimate;
+pub mod explain;
 pub mod film;
 pub mod gpu;
 pub mod hierarchy;

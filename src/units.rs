@@ -2,9 +2,12 @@
 
 use std::time::Duration;
 
-/// A number of bytes, such as "2.3 GB".
+/// A number of bytes, such as "512 B" or "2.3 GB".
 #[expect(clippy::cast_precision_loss, reason = "shown with one decimal")]
 pub(crate) fn bytes(count: u64) -> String {
+    if count < 1000 {
+        return format!("{count} B");
+    }
     format!("{}B", scaled(count as f64))
 }
 
@@ -72,6 +75,7 @@ mod tests {
 
     #[test]
     fn amounts() {
+        assert_eq!(bytes(999), "999 B");
         assert_eq!(bytes(22_272), "22.3 kB");
         assert_eq!(bytes(596_980_000_000), "597.0 GB");
         assert_eq!(rate(14_234_567.0), "14.2 Msamples/s");

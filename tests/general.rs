@@ -10,13 +10,14 @@ mod support {
     pub mod tracers;
 }
 
+use candor::effects::Effects;
 use candor::film::Film;
 use candor::scene::{Estimator, Scene, load};
 use candor::sweep::{Case, cases};
 use rayon::prelude::*;
 use std::path::Path;
 use support::scenes::size;
-use support::tracers::{film, general, kernel, on_device, trace, with_effects, with_kernel};
+use support::tracers::{film, kernel, on_device, trace, with_effects, with_kernel};
 
 const SAMPLES: u64 = 4;
 
@@ -50,7 +51,7 @@ fn special(scene: &Scene) -> Film {
 }
 
 fn by_general(scene: &Scene) -> Film {
-    film(&mut with_effects(scene, general(scene)), &[0..SAMPLES])
+    film(&mut with_effects(scene, Effects::general(scene)), &[0..SAMPLES])
 }
 
 /// Whether the two kernels give the same film, and whether there is light in it.

@@ -61,9 +61,7 @@ fn mirrors() -> Vec<Layout> {
             sphere_count,
             light_count,
             approach,
-            hierarchy_count,
-            reach,
-            padding
+            hierarchy_count
         }),
         mirror!(Node { origin, kinds, low, first_node, high, first_sphere }),
         mirror!(LightNode { center, radius, brightness, everywhere, light, padding }),
@@ -236,7 +234,6 @@ fn scene_rows(scene: &layout::Scene) -> Vec<Row> {
         row(scene.right, scene.film_shift.cast_unsigned()),
         row(scene.up, scene.bound_bits),
         [scene.sphere_count, scene.light_count, scene.approach.to_bits(), scene.hierarchy_count],
-        [scene.reach.to_bits(), 0, 0, 0],
     ]
 }
 
@@ -279,7 +276,7 @@ fn scene_of_distinct_words(stored: bool) -> Packed {
         lights: distinct(spheres, 0x3fa0_0000),
         nodes: if stored { distinct(300, 0x3fb0_0000) } else { Vec::new() },
         stack: 1,
-        turns: 1,
+        turns: 0,
         light_tree: distinct(300, 0x3fc0_0000),
         forms: Vec::new(),
     }

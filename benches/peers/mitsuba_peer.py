@@ -83,9 +83,10 @@ mitsuba.register_bsdf("phong_lobe", PhongLobe)
 class Mitsuba:
     """Mitsuba's `path` on one scene."""
 
-    def __init__(self, scene):
+    def __init__(self, scene, world=None):
+        """`world` are the objects in Mitsuba's terms, where not all are in `scene`."""
         self.description = scene
-        self.scene = mitsuba.load_dict(objects(scene))
+        self.scene = mitsuba.load_dict(world or objects(scene))
         self.pixels = scene["image"]["width"] * scene["image"]["height"]
         # Seconds that the first kernel of each sampler took to compile.
         self.compiling = {}

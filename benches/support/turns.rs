@@ -2,6 +2,7 @@
 
 #![allow(dead_code, reason = "each benchmark uses some of them")]
 
+use candor::cost::Measured;
 use std::fmt;
 
 /// A median with its interval.
@@ -13,24 +14,14 @@ pub struct Middle {
 }
 
 impl Middle {
-    /// The median of some values, and the shortest interval between a k-th smallest and a
-    /// k-th largest of them that holds the true median with at least 95 %: how many values
-    /// lie below it is binomial, whatever their distribution.
+    /// The median of some values, with an interval that holds the true one with at least 95 %.
     ///
     /// # Panics
     /// With fewer than six values, from which no such interval can be made.
     pub fn of(values: &[f64]) -> Self {
-        let sorted = sorted(values);
-        let n = sorted.len();
-        assert!(n >= 6, "an interval of 95 % needs six rounds or more");
-        // P(B = k) and P(B ≤ k) for B of n halves.
-        let (mut chance, mut below, mut k) = (0.5_f64.powi(count(n)), 0.0, 0);
-        while 2.0 * (below + chance) <= 0.05 {
-            below += chance;
-            k += 1;
-            chance *= f64::from(count(n - k + 1)) / f64::from(count(k));
-        }
-        Self { median: median(values), low: sorted[k - 1], high: sorted[n - k] }
+        let middle =
+            Measured::median(values).expect("an interval of 95 % needs six rounds or more");
+        Self { median: middle.value, low: middle.low, high: middle.high }
     }
 
     /// What it says of an extra cost.
@@ -47,10 +38,6 @@ impl fmt::Display for Middle {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(&format!("{:.2} ({:.2}..{:.2})", self.median, self.low, self.high))
     }
-}
-
-fn count(n: usize) -> i32 {
-    i32::try_from(n).expect("a handful of rounds")
 }
 
 fn sorted(values: &[f64]) -> Vec<f64> {

@@ -42,6 +42,10 @@ pub(super) enum Command {
     /// paths vertex by vertex; exits 0 whatever it finds.
     #[command(allow_negative_numbers = true)]
     Replay(ReplayArgs),
+    /// Shows which effects the scene calls for and why, what is left out of its kernel, and what
+    /// that saves on this device; exits 1 if the general kernel makes another film.
+    #[command(allow_negative_numbers = true)]
+    Explain(ExplainArgs),
     /// Lists what can render here.
     Devices,
 }
@@ -53,8 +57,14 @@ impl Command {
             Self::Verify(args) => args.common.threads,
             Self::Cost(args) => args.common.threads,
             Self::Replay(args) => args.common.threads,
+            Self::Explain(args) => args.common.threads,
             Self::Diff(_) | Self::Devices => None,
         }
+    }
+
+    /// Whether no kernel may come out of a driver's cache.
+    pub fn compiles_afresh(&self) -> bool {
+        matches!(self, Self::Explain(_))
     }
 }
 
@@ -164,6 +174,23 @@ pub(super) struct ReplayArgs {
     /// Index of the sample, below 2^56.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(..MAX_SAMPLE_INDEX))]
     pub sample: u64,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArgs {
+    /// Scene file (TOML).
+    pub scene: PathBuf,
+    #[command(flatten)]
+    pub common: CommonArgs,
+    /// Estimator: implicit, cosine, explicit or mis; default: the scene's, or implicit.
+    #[arg(long, value_name = "E", value_parser = parse_estimator)]
+    pub estimator: Option<EstimatorChoice>,
+    /// Print the kernel's WGSL and nothing else; takes no device.
+    #[arg(long, conflicts_with_all = ["spirv", "json"])]
+    pub wgsl: bool,
+    /// Write the kernel's SPIR-V, as for Vulkan 1.3, to stdout and nothing else; takes no device.
+    #[arg(long, conflicts_with = "json")]
+    pub spirv: bool,
 }
 
 #[derive(Debug, Args)]

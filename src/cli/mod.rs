@@ -8,6 +8,8 @@ mod cost_table;
 mod devices;
 mod diff;
 mod environment;
+mod explain;
+mod explain_table;
 mod hard;
 mod interrupt;
 mod ledger;
@@ -22,6 +24,7 @@ mod replay;
 mod replay_json;
 mod replay_table;
 mod setup;
+mod steps;
 mod streams;
 mod verify;
 
@@ -59,7 +62,7 @@ fn refuse<T>(message: impl std::fmt::Display) -> Result<T, Refusal> {
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
-    environment::prepare(cli.command.threads());
+    environment::prepare(cli.command.threads(), cli.command.compiles_afresh());
     report_panics();
     let ended = std::panic::catch_unwind(|| match &cli.command {
         Command::Render(args) => render::run(args),
@@ -67,6 +70,7 @@ pub fn main() -> ExitCode {
         Command::Diff(args) => diff::run(args),
         Command::Cost(args) => cost::run(args),
         Command::Replay(args) => replay::run(args),
+        Command::Explain(args) => explain::run(args),
         Command::Devices => devices::run(),
     });
     match ended {

@@ -112,7 +112,7 @@ fn trace(
     let interrupt = interrupt::watch()?;
     let chosen = choose::choose(&common.device, common.threads)?;
     setup::check_range(&scene, source, &[chosen.arithmetic()])?;
-    let needed = memory::needed(scene.size(), chosen.on_processor());
+    let needed = memory::needed(&scene, chosen.on_processor());
     memory::check(scene.size(), needed)?;
     let mut log = Log::create(args)?;
     let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), &plan);
@@ -158,7 +158,7 @@ fn trace(
 /// A scene without lights is a picture of exact zeros; nothing needs to be traced.
 fn darkness(args: &RenderArgs, scene: Scene, plan: &Plan) -> Result<Finished, Refusal> {
     let on_host = true;
-    memory::check(scene.size(), memory::needed(scene.size(), on_host))?;
+    memory::check(scene.size(), memory::needed(&scene, on_host))?;
     let mut samples = SampleRanges::default();
     // A target is reached at the first look.
     let end = plan.target_error.map_or(plan.samples.end, |_| plan.samples.end.min(FIRST_LOOK));

@@ -6,8 +6,13 @@ use std::io::{ErrorKind, Write};
 /// Prints results. That their reader has left (`candor devices | head -1`) is no error;
 /// a full disk is one.
 pub(super) fn results(text: &str) -> Result<(), Refusal> {
+    binary(&[text.as_bytes(), b"\n"].concat())
+}
+
+/// The same with results that are no text.
+pub(super) fn binary(bytes: &[u8]) -> Result<(), Refusal> {
     let mut stdout = std::io::stdout().lock();
-    match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
+    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             refuse(format_args!("cannot write to stdout: {error}"))
         }

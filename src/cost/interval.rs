@@ -24,6 +24,29 @@ impl Measured {
         Self { value, low: value - half_width, high: value + half_width }
     }
 
+    /// The median of some values, and the shortest interval between a k-th smallest and a k-th
+    /// largest of them that holds the true median with at least 95 %, whatever their
+    /// distribution: how many of them lie below it is binomial (Conover, *Practical
+    /// Nonparametric Statistics*, section 3.2). None from fewer than six values, of which even
+    /// the smallest and the largest hold it with less.
+    #[must_use]
+    pub fn median(values: &[f64]) -> Option<Self> {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let count = sorted.len();
+        let n = i32::try_from(count).ok()?;
+        // P(B = k) and P(B < k) for B of n halves.
+        let (mut chance, mut below, mut k) = (0.5_f64.powi(n), 0.0, 0);
+        while 2.0 * (below + chance) <= 1.0 - CONFIDENCE {
+            below += chance;
+            k += 1;
+            chance *= f64::from(n - k + 1) / f64::from(k);
+        }
+        let place = usize::try_from(k).ok()?.checked_sub(1)?;
+        let value = f64::midpoint(sorted[(count - 1) / 2], sorted[count / 2]);
+        Some(Self { value, low: sorted[place], high: sorted[count - 1 - place] })
+    }
+
     /// All of it times a positive constant.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
@@ -92,7 +115,19 @@ pub(super) fn mean_and_deviation(values: impl Iterator<Item = f64> + Clone) -> (
 
 #[cfg(test)]
 mod tests {
-    use super::{LogError, student};
+    use super::{LogError, Measured, student};
+
+    /// Table A.7 of Hahn & Meeker, *Statistical Intervals*: the ranks of 95 % intervals.
+    #[test]
+    fn intervals_of_a_median() {
+        for (count, low, high) in [(6, 1.0, 6.0), (9, 2.0, 8.0), (15, 4.0, 12.0), (25, 8.0, 18.0)] {
+            let values: Vec<f64> = (1..=count).rev().map(f64::from).collect();
+            let median = f64::from(count + 1) / 2.0;
+            assert_eq!(Measured::median(&values), Some(Measured { value: median, low, high }));
+        }
+        assert_eq!(Measured::median(&[1.0; 5]), None);
+        assert_eq!(Measured::median(&[]), None);
+    }
 
     /// Student's two-sided 95 % points from Fisher & Yates, table III.
     #[test]

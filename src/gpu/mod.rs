@@ -1,6 +1,7 @@
 //! The GPU tracer: device, buffers and dispatches, by way of wgpu.
 
 mod bands;
+mod bytes;
 mod device;
 mod iterations;
 mod pace;
@@ -10,6 +11,7 @@ mod replay;
 mod scene;
 mod tracer;
 
+pub use bytes::device_parts;
 pub use device::{Adapter, Gpu, adapters};
 pub use replay::Replayer;
 pub use tracer::GpuTracer;

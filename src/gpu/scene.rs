@@ -4,6 +4,7 @@ use super::device::Gpu;
 use crate::kernel::{Packed, SPHERE_CAPACITY, layout};
 use crate::tracer::TraceError;
 use bytemuck::{NoUninit, Zeroable};
+use std::borrow::Cow;
 use wgpu::util::DeviceExt;
 
 /// What a kernel is given at one binding.
@@ -39,24 +40,19 @@ impl SceneBuffers {
     /// If it has more spheres or lights than the device binds, or has no memory for them.
     pub(super) fn new(gpu: &Gpu, packed: &Packed) -> Result<Self, TraceError> {
         check_size(gpu, packed)?;
-        let header = uniform(gpu, "scene", std::slice::from_ref(&packed.scene));
-        let mut bindings = vec![Binding::new(0, wgpu::BufferBindingType::Uniform, &header)];
-        if packed.is_stored() {
-            bindings.push(Binding::new(6, READ, &stored(gpu, "spheres", &packed.spheres)));
-            bindings.push(Binding::new(7, READ, &stored(gpu, "lights", &packed.lights)));
-        } else {
-            let spheres = filled(&packed.spheres, SPHERE_CAPACITY);
-            let lights = filled(&packed.lights, SPHERE_CAPACITY);
-            let kind = wgpu::BufferBindingType::Uniform;
-            bindings.push(Binding::new(6, kind, &uniform(gpu, "spheres", &spheres)));
-            bindings.push(Binding::new(7, kind, &uniform(gpu, "lights", &lights)));
-        }
-        if !packed.nodes.is_empty() {
-            bindings.push(Binding::new(8, READ, &stored(gpu, "hierarchy", &packed.nodes)));
-        }
-        if !packed.light_tree.is_empty() {
-            bindings.push(Binding::new(9, READ, &stored(gpu, "light tree", &packed.light_tree)));
-        }
+        let binding = |part: Part| {
+            let usage = match part.kind {
+                wgpu::BufferBindingType::Uniform => wgpu::BufferUsages::UNIFORM,
+                wgpu::BufferBindingType::Storage { .. } => wgpu::BufferUsages::STORAGE,
+            };
+            let buffer = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some(part.label),
+                contents: &part.contents,
+                usage,
+            });
+            Binding::new(part.number, part.kind, &buffer)
+        };
+        let bindings = parts(packed).into_iter().map(binding).collect();
         gpu.check()?;
         Ok(Self(bindings))
     }
@@ -94,28 +90,61 @@ fn check(gpu: &Gpu, what: &str, count: usize, most: u64) -> Result<(), TraceErro
     )))
 }
 
-/// `values`, and zeros up to `count`.
-fn filled<T: Zeroable + Clone>(values: &[T], count: usize) -> Vec<T> {
-    let mut filled = values.to_vec();
-    filled.resize_with(count, T::zeroed);
-    filled
+/// One buffer of a scene.
+struct Part<'a> {
+    number: u32,
+    label: &'static str,
+    kind: wgpu::BufferBindingType,
+    contents: Cow<'a, [u8]>,
 }
 
-fn uniform<T: NoUninit>(gpu: &Gpu, label: &str, values: &[T]) -> wgpu::Buffer {
-    create(gpu, label, bytemuck::cast_slice(values), wgpu::BufferUsages::UNIFORM)
+/// What goes into the buffers of a scene.
+fn parts(packed: &Packed) -> Vec<Part<'_>> {
+    let mut parts = vec![uniform(0, "scene", std::slice::from_ref(&packed.scene), 1)];
+    if packed.is_stored() {
+        parts.push(stored(6, "spheres", &packed.spheres));
+        parts.push(stored(7, "lights", &packed.lights));
+    } else {
+        parts.push(uniform(6, "spheres", &packed.spheres, SPHERE_CAPACITY));
+        parts.push(uniform(7, "lights", &packed.lights, SPHERE_CAPACITY));
+    }
+    if !packed.nodes.is_empty() {
+        parts.push(stored(8, "hierarchy", &packed.nodes));
+    }
+    if !packed.light_tree.is_empty() {
+        parts.push(stored(9, "light tree", &packed.light_tree));
+    }
+    parts
+}
+
+/// Bytes of each of them.
+pub(super) fn bytes(packed: &Packed) -> Vec<(&'static str, u64)> {
+    parts(packed).iter().map(|part| (part.label, part.contents.len() as u64)).collect()
+}
+
+/// Some values, and zeros up to `count`.
+fn uniform<T: NoUninit + Zeroable>(
+    number: u32,
+    label: &'static str,
+    values: &[T],
+    count: usize,
+) -> Part<'static> {
+    let mut filled = values.to_vec();
+    filled.resize_with(count, T::zeroed);
+    let contents = bytemuck::cast_slice(&filled).to_vec().into();
+    Part { number, label, kind: wgpu::BufferBindingType::Uniform, contents }
 }
 
 /// A binding cannot be empty.
-fn stored<T: NoUninit + Zeroable>(gpu: &Gpu, label: &str, values: &[T]) -> wgpu::Buffer {
-    let nothing = [T::zeroed()];
-    let values = if values.is_empty() { &nothing } else { values };
-    create(gpu, label, bytemuck::cast_slice(values), wgpu::BufferUsages::STORAGE)
-}
-
-fn create(gpu: &Gpu, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents,
-        usage,
-    })
+fn stored<'a, T: NoUninit + Zeroable>(
+    number: u32,
+    label: &'static str,
+    values: &'a [T],
+) -> Part<'a> {
+    let contents = if values.is_empty() {
+        bytemuck::bytes_of(&T::zeroed()).to_vec().into()
+    } else {
+        Cow::Borrowed(bytemuck::cast_slice(values))
+    };
+    Part { number, label, kind: READ, contents }
 }

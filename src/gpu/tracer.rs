@@ -14,7 +14,7 @@ use crate::scene::{ImageSize, Scene};
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger, TraceError, Tracer};
 use crate::viewpoint::Viewpoint;
 use std::ops::Range;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The device counts invalid samples in 32 bits, so its ledger is taken to the host before it
 /// can have met that many: after this many samples and one more dispatch, which is shorter.
@@ -34,6 +34,8 @@ pub struct GpuTracer {
     /// Bytes of the scene's buffers.
     scene_bytes: u64,
     pipeline: wgpu::ComputePipeline,
+    /// What making it took.
+    compiling: Duration,
     work: wgpu::Buffer,
     ledger: wgpu::Buffer,
     /// What was taken from the device's ledger so far.
@@ -50,7 +52,8 @@ impl GpuTracer {
     /// # Errors
     /// If scene or picture do not fit the device.
     pub fn new(scene: &Scene, gpu: Gpu) -> Result<Self, TraceError> {
-        Self::with_effects(scene, gpu, Effects::of(scene, &Viewpoint::of(scene)))
+        let viewpoint = Viewpoint::of(scene);
+        Self::seen_from(&viewpoint, scene, gpu, Effects::of(scene, &viewpoint))
     }
 
     /// The same with a kernel for more effects than the scene calls for.
@@ -58,7 +61,16 @@ impl GpuTracer {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_effects(scene: &Scene, gpu: Gpu, effects: Effects) -> Result<Self, TraceError> {
-        let packed = kernel::pack(scene, &Viewpoint::of(scene), effects, sample_scale(scene));
+        Self::seen_from(&Viewpoint::of(scene), scene, gpu, effects)
+    }
+
+    fn seen_from(
+        viewpoint: &Viewpoint,
+        scene: &Scene,
+        gpu: Gpu,
+        effects: Effects,
+    ) -> Result<Self, TraceError> {
+        let packed = kernel::pack(scene, viewpoint, effects, sample_scale(scene));
         check_iterations(scene, effects, &packed)?;
         Self::with_kernel(scene, gpu, &packed, &Kernel::of(scene, effects, &packed).wgsl())
     }
@@ -97,8 +109,10 @@ impl GpuTracer {
             ];
             [buffers.bindings(), &own].concat()
         };
+        let started = Instant::now();
         let pipeline = Pipeline::new(device, wgsl, "render", &bindings(&bands[0]));
         gpu.check()?;
+        let compiling = started.elapsed();
         let groups: Vec<wgpu::BindGroup> =
             bands.iter().map(|band| pipeline.bind(device, &bindings(band))).collect();
         gpu.check()?;
@@ -109,6 +123,7 @@ impl GpuTracer {
             samples: SampleRanges::default(),
             scene_bytes: buffers.bytes(),
             pipeline: pipeline.compute,
+            compiling,
             work,
             ledger,
             invalid: Ledger::default(),
@@ -117,6 +132,13 @@ impl GpuTracer {
             pace: Pace::default(),
             gpu,
         })
+    }
+
+    /// How long it took to make the pipeline from the kernel's text. Some drivers compile it only
+    /// when it is dispatched first.
+    #[must_use]
+    pub fn compiling(&self) -> Duration {
+        self.compiling
     }
 
     /// Bytes of the buffers on the device, the one for reading back included.

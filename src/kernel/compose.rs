@@ -16,7 +16,7 @@ pub const UNROLLED_SPHERES: usize = 16;
 /// Paths of up to this many bounces are written out, one statement a segment: a driver's
 /// compiler does so by itself for short loops, but not for the longer body of `mis`
 /// (BENCHMARKS.md, "Speed of the classic scene").
-const UNROLLED_BOUNCES: u32 = 4;
+pub const UNROLLED_BOUNCES: u32 = 4;
 
 /// The statements that take a path from segment to segment, one by one.
 fn written_out(bounces: u32) -> String {
@@ -129,18 +129,27 @@ impl Kernel {
         text.into_wgsl()
     }
 
-    fn scatters(&self) -> bool {
+    /// Whether paths scatter.
+    #[must_use]
+    pub fn scatters(&self) -> bool {
         self.effects.has(Effect::Diffuse) || self.effects.has(Effect::Glossy)
     }
 
     /// The statements that take a path from segment to segment.
     fn steps(&self) -> String {
-        match self.bounces {
-            _ if !self.scatters() => written_out(0),
-            _ if self.effects.has(Effect::Hierarchy) => looped("advance"),
-            few @ ..=UNROLLED_BOUNCES => written_out(few),
-            _ => looped("advance"),
+        if !self.scatters() {
+            written_out(0)
+        } else if self.writes_paths() {
+            written_out(self.bounces)
+        } else {
+            looped("advance")
         }
+    }
+
+    /// Whether the segments of a path are written out one by one, not a loop.
+    #[must_use]
+    pub fn writes_paths(&self) -> bool {
+        !self.effects.has(Effect::Hierarchy) && self.bounces <= UNROLLED_BOUNCES
     }
 
     /// What is loaded once a path.

@@ -70,10 +70,6 @@ pub struct Scene {
     pub approach: f32,
     /// Spheres under the hierarchy; they come first of all.
     pub hierarchy_count: u32,
-    /// No coordinate of the hierarchy's boxes is larger, in kernel units.
-    pub reach: f32,
-    /// Implicit in WGSL.
-    pub padding: [u32; 3],
 }
 
 /// A node of the hierarchy: up to four children and their boxes, on a grid of 255 cubes a

@@ -4,6 +4,7 @@ mod compose;
 pub mod layout;
 mod pack;
 mod search;
+mod spirv;
 mod text;
 mod tile;
 mod turns;
@@ -11,8 +12,11 @@ mod unrolled;
 mod validate;
 mod wide;
 
-pub use compose::{Kernel, UNROLLED_SPHERES, hierarchy_probe_source, probe_source};
+pub use compose::{
+    Kernel, UNROLLED_BOUNCES, UNROLLED_SPHERES, hierarchy_probe_source, probe_source,
+};
 pub use layout::SPHERE_CAPACITY;
 pub use pack::{KernelUnits, Packed, pack};
+pub use spirv::spirv;
 pub use tile::Tile;
 pub use validate::validate;

@@ -95,7 +95,6 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     let mut header: layout::Scene = bytemuck::Zeroable::zeroed();
     pack_camera(&mut header, scene, viewpoint, &units);
     header.hierarchy_count = word(wide.order.len());
-    header.reach = boxes.iter().map(reach).fold(0.0, f32::max);
     header.factored_count = factored_count;
     header.sphere_count = word(packed.len());
     header.seed = scene.settings().seed();
@@ -128,10 +127,6 @@ const ROOM: f64 = 1.0 / 4096.0;
 fn bounds(sphere: &layout::Sphere) -> Bounds {
     let center = DVec3::from(sphere.position.map(f64::from));
     Bounds::of_sphere(center, (1.0 + ROOM) * f64::from(sphere.size))
-}
-
-fn reach(bounds: &Bounds) -> f32 {
-    bounds.low.abs().max(bounds.high.abs()).max_element()
 }
 
 /// Places of the emitters among the packed spheres, in the order of the scene file: which one
