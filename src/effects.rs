@@ -230,10 +230,13 @@ impl Effects {
     }
 
     /// Those of the general kernel under a scene's estimator, which makes the same paths: every
-    /// effect, but none that serves light sampling where the estimator samples no lights.
+    /// effect, but none that serves light sampling where the estimator samples no lights, or
+    /// where there are none.
     #[must_use]
     pub fn general(scene: &Scene) -> Self {
-        let samples_lights = scene.settings().estimator().samples_lights();
+        let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
+        let samples_lights =
+            scene.settings().estimator().samples_lights() && scene.spheres().iter().any(emits);
         let serves = |rule: &&Rule| samples_lights || !rule.samples_lights;
         RULES.iter().filter(serves).map(|rule| rule.effect).fold(Self::NONE, Self::with)
     }

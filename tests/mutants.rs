@@ -11,14 +11,12 @@ mod support {
     pub mod light_scenes;
     pub mod scenes;
     pub mod tracers;
+    pub mod tree_mutants;
 }
 
 use candor::scene::Estimator::{self, Cosine, Explicit, Implicit, Mis};
 use support::kernel_judge::Judge;
-
-/// What is wrong, under which estimator, what stands in the kernel, what takes its place, and
-/// who tells.
-type Mutant = (&'static str, Estimator, &'static str, &'static str, Judge);
+use support::tree_mutants::{Mutant, TREE_MUTANTS};
 
 /// Of `implicit`: what is wrong, what stands in the kernel, and what takes its place.
 const MUTANTS: &[(&str, &str, &str, Judge)] = &[
@@ -309,97 +307,6 @@ const OTHER_MUTANTS: &[Mutant] = &[
         "select(diffuse.weight, glossy.weight, is_glossy)",
         "diffuse.weight",
         Judge::Hollow,
-    ),
-];
-
-/// Of searches by hierarchy, and of walks to a light.
-const TREE_MUTANTS: &[Mutant] = &[
-    (
-        "far side of a box",
-        Implicit,
-        "select(node.high, node.low, ahead)",
-        "select(node.low, node.high, ahead)",
-        Judge::Swarm,
-    ),
-    ("boxes cut short", Implicit, "vec4<f32>(limit)", "vec4<f32>(0.5 * limit)", Judge::Swarm),
-    (
-        "boxes half as large",
-        Implicit,
-        "(node.kinds >> 16u) <<",
-        "((node.kinds >> 16u) - 1u) <<",
-        Judge::Swarm,
-    ),
-    ("a sibling forgotten", Implicit, "if met > 1u {", "if met > 2u {", Judge::Swarm),
-    ("siblings that wait forgotten", Implicit, "(*way).height++;", "", Judge::Swarm),
-    ("a child twice", Implicit, "max(c.x, c.y), max(b.x", "min(c.x, c.y), max(b.x", Judge::Swarm),
-    ("the same sibling again", Implicit, "((rest & 0x3fu) >> 2u)", "(rest & 0x3fu)", Judge::Swarm),
-    ("node of the first child", Implicit, " + countOneBits(nodes)", "", Judge::Swarm),
-    (
-        "spheres of the first child",
-        Implicit,
-        "siblings.first_sphere + spheres",
-        "siblings.first_sphere",
-        Judge::Swarm,
-    ),
-    (
-        "first sphere off by one",
-        Implicit,
-        "let first = item >> 4u;",
-        "let first = (item >> 4u) + 1u;",
-        Judge::Swarm,
-    ),
-    ("last sphere of a leaf", Implicit, "first + (item & 15u) - 1u", "first", Judge::Swarm),
-    (
-        "last of equal distances",
-        Implicit,
-        "spheres[here.sphere].index <",
-        "spheres[here.sphere].index >",
-        Judge::Swarm,
-    ),
-    ("last of a leaf's equal distances", Implicit, "t.y < t.x", "t.y <= t.x", Judge::Swarm),
-    ("a light hides itself", Explicit, "i == leaving || i == light", "i == leaving", Judge::Swarm),
-    (
-        "behind the light",
-        Explicit,
-        "return t < distance || (t ==",
-        "return t > distance || (t ==",
-        Judge::Swarm,
-    ),
-    (
-        "only the last hides",
-        Explicit,
-        "blocked = hides(pair.x, ray",
-        "blocked = hides(pair.y, ray",
-        Judge::Swarm,
-    ),
-    (
-        "later ones hide",
-        Explicit,
-        "spheres[i].index < spheres[light].index",
-        "spheres[i].index > spheres[light].index",
-        Judge::Swarm,
-    ),
-    ("chance of the last turn", Explicit, "walk.chance * select(", "select(", Judge::Layer),
-    (
-        "light of the next leaf",
-        Explicit,
-        "light_tree[walk.node].light",
-        "light_tree[walk.node ^ 1u].light",
-        Judge::Layer,
-    ),
-    (
-        "never evenly",
-        Explicit,
-        "0.5 * walked + 0.5 / f32(scene.light_count)",
-        "walked",
-        Judge::Layer,
-    ),
-    (
-        "chance of the other side",
-        Mis,
-        "select(1.0 - chance, chance, goes_left)",
-        "select(chance, 1.0 - chance, goes_left)",
-        Judge::Layer,
     ),
 ];
 

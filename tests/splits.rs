@@ -9,7 +9,7 @@ mod support {
     pub mod tracers;
 }
 
-use candor::effects::Effect;
+use candor::effects::{Effect, Effects};
 use candor::estimate::compare;
 use candor::film::{Film, MAX_SAMPLE_INDEX};
 use candor::kernel::Tile;
@@ -17,7 +17,7 @@ use candor::scene::{Estimator, ImageSize, Scene};
 use candor::tracer::Tracer;
 use std::ops::Range;
 use support::scenes::{classic, many, room, size, with_seed};
-use support::tracers::{film, general, kernel, on_device, twin, with_effects, with_kernel};
+use support::tracers::{film, kernel, on_device, twin, with_effects, with_kernel};
 
 /// Odd, tiny, wide, and whole tiles.
 const SIZES: [(u32, u32); 6] = [(27, 51), (1, 1), (16384, 1), (1, 7), (64, 64), (9, 130)];
@@ -106,7 +106,9 @@ fn the_specialised_kernel_gives_the_general_ones_bits() {
         let settings = scene.settings().with_estimator(estimator);
         let scene = scene.clone().with_settings(settings);
         let special = film(&mut on_device(&scene), &[0..16]);
-        for effects in [general(&scene).without(Effect::Hierarchy), general(&scene)] {
+        for effects in
+            [Effects::general(&scene).without(Effect::Hierarchy), Effects::general(&scene)]
+        {
             let general = film(&mut with_effects(&scene, effects), &[0..16]);
             assert!(general == special, "{estimator:?} {effects:?}");
         }

@@ -47,7 +47,7 @@ pub struct Packed {
     /// Those under the hierarchy leaf by leaf, then the others in factored form, then those in
     /// anchored form, the last two in the order of the scene file.
     pub spheres: Vec<layout::Sphere>,
-    /// Places of the emitters among them.
+    /// Places of the emitters among them, in the order of the scene file.
     pub lights: Vec<u32>,
     /// The hierarchy; empty where there is none.
     pub nodes: Vec<layout::Node>,
@@ -129,10 +129,13 @@ fn bounds(sphere: &layout::Sphere) -> Bounds {
     Bounds::of_sphere(center, (1.0 + ROOM) * f64::from(sphere.size))
 }
 
-/// Places of the emitters among the packed spheres.
+/// Places of the emitters among the packed spheres, in the order of the scene file: which one
+/// a random number picks does not depend on how the spheres are packed.
 fn lights(spheres: &[layout::Sphere]) -> Vec<u32> {
     let emits = |&(_, sphere): &(u32, &layout::Sphere)| sphere.kind == layout::KIND_EMITTER;
-    (0..).zip(spheres).filter(emits).map(|(place, _)| place).collect()
+    let mut lights: Vec<(u32, &layout::Sphere)> = (0..).zip(spheres).filter(emits).collect();
+    lights.sort_unstable_by_key(|(_, sphere)| sphere.index);
+    lights.into_iter().map(|(place, _)| place).collect()
 }
 
 /// The tree in kernel units. Leaves learn the places of their lights, and lights the numbers

@@ -58,9 +58,9 @@ impl Wide {
         let children = children(binary, next.node);
         let (first_node, first_sphere) = (self.nodes.len(), self.order.len());
         let mut grid = Grid::of(binary.nodes()[next.node].bounds);
-        // Siblings wait together.
+        // Siblings wait together, and the latest ones at hand and not on the stack.
         let waiting = next.waiting + 1;
-        self.stack = self.stack.max(waiting);
+        self.stack = self.stack.max(next.waiting);
         for (slot, &child) in children.iter().enumerate() {
             let node = &binary.nodes()[child];
             let kind = if node.count == 0 { A_NODE } else { node.count };

@@ -5,8 +5,9 @@
 
 use crate::support::gpu;
 use crate::support::scenes::{classic, diffuse, emitter, glossy, seen, size, sphere, with_seed};
-use crate::support::tracers::{general, kernel, on_device, trace, twin, with_effects, with_kernel};
+use crate::support::tracers::{kernel, on_device, trace, twin, with_effects, with_kernel};
 use crate::{Line, Verdict};
+use candor::effects::Effects;
 use candor::estimate::{Summary, compare, pair, summarize};
 use candor::film::{Film, sums};
 use candor::gpu::GpuTracer;
@@ -314,7 +315,7 @@ fn left_out() -> Line {
     let judge = |change: &dyn Fn(&str) -> String| {
         let same_bits = |scene: &Scene| {
             let special = film_of(scene, &change(&kernel(scene)), &[0..32]);
-            trace(&mut with_effects(scene, general(scene)), &[0..32]).0 == special
+            trace(&mut with_effects(scene, Effects::general(scene)), &[0..32]).0 == special
         };
         same(same_bits(&scene) && same_bits(&plain))
     };

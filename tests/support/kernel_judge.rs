@@ -4,8 +4,8 @@
 use super::judge::is_exactly;
 use super::light_scenes;
 use super::scenes::{classic, diffuse, emitter, glossy, seen, size, sphere, with_seed};
-use super::tracers::{film, general, kernel, trace, twin, with_effects, with_kernel};
-use candor::effects::Effect;
+use super::tracers::{film, kernel, trace, twin, with_effects, with_kernel};
+use candor::effects::{Effect, Effects};
 use candor::estimate::pair;
 use candor::film::Film;
 use candor::scene::{Estimator, Scene};
@@ -149,7 +149,7 @@ impl Judge {
                 ours.is_some() && pixels(ours) != pixels(other)
             }
             Self::Swarm => {
-                let effects = general(&scene).without(Effect::Hierarchy);
+                let effects = Effects::general(&scene).without(Effect::Hierarchy);
                 let loops = film(&mut with_effects(&scene, effects), &[0..16]);
                 valid(&mut tracer, &[0..16]) == Some(loops)
             }

@@ -5,13 +5,13 @@
 
 use super::{gpu, scenes::packed};
 use candor::cpu::CpuTracer;
-use candor::effects::{Effect, Effects};
+use candor::effects::Effects;
 use candor::film::Film;
 use candor::gpu::GpuTracer;
 use candor::kernel::Kernel;
-use candor::scene::{Scene, Sphere, Surface};
+use candor::scene::Scene;
 use candor::tracer::{Ledger, Tracer};
-use candor::viewpoint::{Form, Viewpoint};
+use candor::viewpoint::Viewpoint;
 use std::ops::Range;
 
 pub fn on_device(scene: &Scene) -> GpuTracer {
@@ -26,22 +26,6 @@ pub fn twin(scene: &Scene) -> CpuTracer {
 pub fn kernel(scene: &Scene) -> String {
     let effects = Effects::of(scene, &Viewpoint::of(scene));
     Kernel::of(scene, effects, &packed(scene)).wgsl()
-}
-
-/// Every effect that may be added to those of a scene without making another picture: what its
-/// estimator does not do is left out, and what would have nothing to work on.
-pub fn general(scene: &Scene) -> Effects {
-    use Effect::{AnchoredLight, Connections, FactoredLight, Hierarchy, LightScan, LightTree};
-    let viewpoint = Viewpoint::of(scene);
-    let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
-    let lights = scene.spheres().iter().any(emits);
-    let connects = lights && scene.settings().estimator().samples_lights();
-    let is_small = |(&form, &inside): (&Form, &bool)| form == Form::Factored && !inside;
-    let has_small = viewpoint.forms().iter().zip(viewpoint.inside()).any(is_small);
-    let light = [Connections, LightScan, LightTree, FactoredLight, AnchoredLight];
-    let without = |effects: Effects, effect: Effect| effects.without(effect);
-    let all = if connects { Effects::ALL } else { light.into_iter().fold(Effects::ALL, without) };
-    if has_small { all } else { all.without(Hierarchy) }
 }
 
 /// A tracer whose kernel simulates these effects, with the spheres where it looks for them.
