@@ -34,7 +34,7 @@ pub(super) fn run(args: &ExplainArgs) -> Result<u8, Refusal> {
             match measured(args, &scene, &source, [&versions[0], &versions[1]], adapter) {
                 Err(Stopped::Interrupted) => return Ok(INTERRUPTED),
                 Err(Stopped::Refused(refusal)) => return Err(refusal),
-                Ok(measured) => Measurement::Made(adapter.describe(), measured),
+                Ok(measured) => Measurement::Made(adapter.describe(), Box::new(measured)),
             }
         }
         Some(Chosen::Twin(_)) if args.common.device == DeviceChoice::Cpu => {
@@ -62,7 +62,7 @@ pub(super) struct Explained {
 
 /// What was measured, or why nothing was.
 pub(super) enum Measurement {
-    Made(Description, Measured),
+    Made(Description, Box<Measured>),
     None(&'static str),
 }
 
@@ -148,7 +148,7 @@ struct Json<'a> {
 
 fn json(explained: &Explained) -> String {
     let (tracer, measured, not_measured) = match &explained.measurement {
-        Measurement::Made(tracer, measured) => (Some(tracer), Some(measured), None),
+        Measurement::Made(tracer, measured) => (Some(tracer), Some(measured.as_ref()), None),
         Measurement::None(why) => (None, None, Some(*why)),
     };
     let settings = explained.scene.settings();

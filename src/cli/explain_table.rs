@@ -18,7 +18,7 @@ const COLUMN: usize = 26;
 pub(super) fn text(explained: &Explained) -> String {
     let Explanation { effects, specialised, general } = &explained.explanation;
     let measured = match &explained.measurement {
-        Measurement::Made(_, measured) => Some(measured),
+        Measurement::Made(_, measured) => Some(measured.as_ref()),
         Measurement::None(_) => None,
     };
     let mut sections = vec![
@@ -132,8 +132,8 @@ fn findings(device: &Description, measured: &Measured) -> String {
             "measured",
             &format!(
                 "{rounds} rounds in turns at {width}x{height}, {spp} samples per pixel: medians \
-                 with 95\u{a0}% intervals; {compilations} fresh compilations up to the end of the \
-                 first dispatch: medians with extremes"
+                 with 95\u{a0}% intervals; compiled afresh up to the end of the first \
+                 dispatch, {compilations}\u{a0}times: medians with extremes"
             ),
         ),
         row_of_finding("films", &films(measured)),

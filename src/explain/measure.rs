@@ -18,11 +18,11 @@ const SIDE: u32 = 256;
 /// Compilations of each kernel, unless they take longer than [`COMPILING`].
 const COMPILATIONS: u32 = 7;
 
-/// Fewest of them.
-const FEWEST_COMPILATIONS: u32 = 3;
-
-/// Time for compiling.
+/// Time for compiling; the first compilation of each kernel may take longer.
 const COMPILING: Duration = Duration::from_secs(3);
+
+/// Samples of each pixel that are traced to see what compiling takes: with it and without.
+const COMPILED_SAMPLES: u64 = 2;
 
 /// Rounds in which both kernels are timed: the median of fewer than six has no 95 % interval.
 const FEWEST_ROUNDS: usize = 6;
@@ -122,14 +122,13 @@ pub fn measure(
     watch: &mut Watch,
 ) -> Result<Measured, ExplainError> {
     let bench = Bench { scene, versions, adapter };
-    let compiled = bench.compile(watch)?;
     let size = reduced(scene.size());
-    let mut tracers = [bench.tracer(0, size)?, bench.tracer(1, size)?];
+    let (mut tracers, compiled) = bench.compile(size, watch)?;
     let (rounds, spp) = trace(&mut tracers, size, watch)?;
     let [ours, general] = &mut tracers;
     let (films, software) = ([ours.film()?, general.film()?], adapter.is_software());
     let ratios: Vec<f64> = rounds.iter().map(|[ours, general]| ours / general).collect();
-    let ratio = median(ratios);
+    let ratio = median(&ratios);
     Ok(Measured {
         width: size.width(),
         height: size.height(),
@@ -137,8 +136,10 @@ pub fn measure(
         compilations: compiled.len(),
         compile_seconds: [0, 1].map(|which| spread(compiled.iter().map(|pair| pair[which]))),
         rounds: rounds.len(),
-        seconds_per_sample: [0, 1]
-            .map(|which| median(rounds.iter().map(|pair| pair[which]).collect())),
+        seconds_per_sample: [0, 1].map(|which| {
+            let own: Vec<f64> = rounds.iter().map(|pair| pair[which]).collect();
+            median(&own)
+        }),
         ratio,
         saving: Saving::of(ratio),
         films: Agreement::of(&films[0], &films[1], software),
@@ -146,8 +147,8 @@ pub fn measure(
     })
 }
 
-fn median(values: Vec<f64>) -> Interval {
-    Interval::median(&values).expect("there are at least six rounds")
+fn median(values: &[f64]) -> Interval {
+    Interval::median(values).expect("there are at least six rounds")
 }
 
 /// The median between the extremes.
@@ -168,8 +169,9 @@ fn reduced(size: ImageSize) -> ImageSize {
     if largest <= SIDE {
         return size;
     }
-    let side = |side: u32| (side * SIDE / largest).max(1);
-    ImageSize::new(side(size.width()), side(size.height())).expect("both sides are from 1 to SIDE")
+    let shorter = |side: u32| (side * SIDE / largest).max(1);
+    ImageSize::new(shorter(size.width()), shorter(size.height()))
+        .expect("both sides are from 1 to SIDE")
 }
 
 /// The two kernels and where they run.
@@ -189,28 +191,44 @@ impl Bench<'_> {
         GpuTracer::with_kernel(&scene, Gpu::open(self.adapter)?, packed, &wgsl)
     }
 
-    /// Seconds for compiling each, in turns. Each time the kernel is for a picture of another
-    /// width, a constant of it, so that no cache of the driver has it; one workgroup is as
-    /// wide as the narrowest.
-    fn compile(&self, watch: &mut Watch) -> Result<Vec<[f64; 2]>, ExplainError> {
+    /// Tracers of the picture, and seconds for compiling each kernel, in turns. Each time the
+    /// kernel is for a picture of another width, a constant of it, so that no cache of the driver
+    /// has it.
+    fn compile(
+        &self,
+        size: ImageSize,
+        watch: &mut Watch,
+    ) -> Result<([GpuTracer; 2], Vec<[f64; 2]>), ExplainError> {
         let started = Instant::now();
-        let mut compiled = Vec::new();
-        for round in 0..COMPILATIONS {
-            if round >= FEWEST_COMPILATIONS && started.elapsed() > COMPILING {
+        watch.report(Step::Compiling, 0.0)?;
+        let (ours, first) = self.compiled(0, size)?;
+        watch.report(Step::Compiling, 0.5 / f64::from(COMPILATIONS))?;
+        let (general, second) = self.compiled(1, size)?;
+        let mut seconds = vec![[first, second]];
+        for round in 1..COMPILATIONS {
+            if started.elapsed() > COMPILING {
                 break;
             }
-            let size = ImageSize::new(8 + round, 8).expect("a small picture");
-            let mut seconds = [0.0; 2];
+            watch.report(Step::Compiling, f64::from(round) / f64::from(COMPILATIONS))?;
+            let other = ImageSize::new(size.width() + round, size.height())
+                .expect("hardly larger than what is traced");
+            let mut pair = [0.0; 2];
             for which in order(round as usize) {
-                watch.report(Step::Compiling, f64::from(round) / f64::from(COMPILATIONS))?;
-                let mut tracer = self.tracer(which, size)?;
-                let first = timed(|| tracer.add_samples(0..1))?;
-                let second = timed(|| tracer.add_samples(1..2))?;
-                seconds[which] = tracer.compiling().as_secs_f64() + (first - second).max(0.0);
+                pair[which] = self.compiled(which, other)?.1;
             }
-            compiled.push(seconds);
+            seconds.push(pair);
         }
-        Ok(compiled)
+        Ok(([ours, general], seconds))
+    }
+
+    /// A tracer that has traced two samples of each pixel, and the seconds from the kernel's text
+    /// to the end of the first, less those of the second: drivers compile as late as that.
+    fn compiled(&self, which: usize, size: ImageSize) -> Result<(GpuTracer, f64), TraceError> {
+        let mut tracer = self.tracer(which, size)?;
+        let first = timed(|| tracer.add_samples(0..1))?;
+        let second = timed(|| tracer.add_samples(1..COMPILED_SAMPLES))?;
+        let seconds = tracer.compiling().as_secs_f64() + (first - second).max(0.0);
+        Ok((tracer, seconds))
     }
 }
 
@@ -226,14 +244,14 @@ fn timed(work: impl FnOnce() -> Result<(), TraceError>) -> Result<f64, TraceErro
 }
 
 /// Seconds per sample of each tracer, round by round, and how many samples of each pixel both
-/// traced in all; always the same ones.
+/// traced in all, those while compiling included; always the same ones.
 #[expect(clippy::cast_precision_loss, reason = "counts of samples")]
 fn trace(
     tracers: &mut [GpuTracer; 2],
     size: ImageSize,
     watch: &mut Watch,
 ) -> Result<(Vec<[f64; 2]>, u64), ExplainError> {
-    let mut done = 0;
+    let mut done = COMPILED_SAMPLES;
     let mut round = 0;
     let mut turn = |count: u64| -> Result<[f64; 2], TraceError> {
         let mut seconds = [0.0; 2];

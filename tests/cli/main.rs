@@ -6,6 +6,7 @@ mod candor;
 mod cost;
 mod devices;
 mod diff;
+mod explain;
 mod films;
 mod hostile;
 mod pictures;
