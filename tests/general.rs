@@ -94,7 +94,7 @@ fn a_fault_in_one_effect_is_told() {
         ("15-uniform-lobe", Implicit, "(exponent + 1.0))", "(exponent + 1.001))"),
         ("09-integrating-sphere", Mis, "2.0 * abs(q.b)", "2.0000002 * abs(q.b)"),
         ("25-lamps-touch-and-overlap", Explicit, "0.5 * (potential", "0.5000001 * (potential"),
-        ("molecule", Mis, "t.y < t.x)", "t.y > t.x)"),
+        ("particles", Explicit, "t.y < t.x)", "t.y > t.x)"),
         ("particles", Explicit, "return t < distance ||", "return t > distance ||"),
     ];
     let scenes = scenes();

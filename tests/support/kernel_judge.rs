@@ -108,7 +108,7 @@ impl Judge {
             Self::Inside => light_scenes::in_light(),
             Self::Sun => light_scenes::under_sun(1e2),
             Self::Lamps => light_scenes::joined_lights(),
-            Self::Crowd => light_scenes::forty_lights(),
+            Self::Crowd => light_scenes::thirty_lights(),
             Self::Lobes => light_scenes::gloss(),
             Self::Layer => light_scenes::lamp_layer(300, 4.0),
             Self::Swarm => light_scenes::swarm(),

@@ -123,6 +123,13 @@ pub fn forty_lights() -> Scene {
     picture([0.0, 4.0, 9.0], [0.0, 0.5, 0.0], 2, spheres)
 }
 
+/// Thirty of them with their balls: so few spheres that no hierarchy is made over them.
+pub fn thirty_lights() -> Scene {
+    let all = forty_lights();
+    let spheres = all.spheres()[..61].to_vec();
+    Scene::new(all.camera().clone(), all.size(), all.settings(), spheres)
+}
+
 /// A lamp behind a ball that hides it from most of the floor, under a lid.
 pub fn hidden_light() -> Scene {
     let spheres = vec![
@@ -191,7 +198,7 @@ pub fn swarm() -> Scene {
         let [x, y, z, size] = random_bits(key, 0, 0).map(unit_float);
         let place = DVec3::new(6.0 * x - 3.0, 3.0 * y, 6.0 * z - 4.0);
         let tint = [0.9, 0.3 + 0.3 * f64::from(index % 3), 0.8];
-        let surface = if index % 4 == 0 { glossy(0.8, 5.0) } else { colored(tint) };
+        let surface = if index.is_multiple_of(4) { glossy(0.8, 5.0) } else { colored(tint) };
         sphere(place, 0.03 * 12_f64.powf(size * size), surface)
     };
     let shell = |i: u32, surface| sphere([0.5, 1.5, 1.5], 0.6 - 1e-10 * f64::from(i), surface);

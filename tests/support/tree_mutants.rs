@@ -52,7 +52,7 @@ pub const TREE_MUTANTS: &[Mutant] = &[
         Judge::Swarm,
     ),
     ("last of a leaf's equal distances", Implicit, "t.y < t.x", "t.y <= t.x", Judge::Swarm),
-    ("a light hides itself", Explicit, "i == leaving || i == light", "i == leaving", Judge::Swarm),
+    ("earlier ones do not hide", Explicit, "(t == distance &&", "(t > MISS &&", Judge::Swarm),
     (
         "behind the light",
         Explicit,
