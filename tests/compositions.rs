@@ -126,7 +126,9 @@ fn each_block(block: &Block, see: &mut dyn FnMut(&Statement)) {
                 each_block(reject, see);
             }
             Statement::Switch { cases, .. } => {
-                cases.iter().for_each(|case| each_block(&case.body, see));
+                for case in cases {
+                    each_block(&case.body, see);
+                }
             }
             Statement::Loop { body, continuing, .. } => {
                 each_block(body, see);
@@ -188,8 +190,10 @@ fn loops(module: &Module) -> usize {
     loops
 }
 
+type CalledFor = fn(&Kernel) -> bool;
+
 /// Functions, and when they are in the kernel that renders.
-const BROUGHT: &[(&[&str], fn(&Kernel) -> bool)] = &[
+const BROUGHT: &[(&[&str], CalledFor)] = &[
     (
         &[
             "polar_phong",

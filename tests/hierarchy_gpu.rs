@@ -37,14 +37,24 @@ fn text(packed: &Packed) -> String {
     hierarchy_probe_source(packed.stack) + LOOPS
 }
 
+/// One of `count` places, by a number in [0, 1).
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "up to a million of them"
+)]
+fn place_of(pick: f64, count: usize) -> usize {
+    (pick * count as f64) as usize
+}
+
 /// Rays of all kinds that boxes could lose; `count` of each kind, some from `far` outside.
 fn rays(packed: &Packed, count: usize, far: f64) -> Vec<Ray> {
     let all = &packed.spheres[..packed.scene.factored_count as usize];
     let mut rays = Vec::new();
     for index in 0..count {
         let [pick, a, b, c] = draw(index, 1);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place")]
-        let place = (pick * all.len() as f64) as usize;
+        let place = place_of(pick, all.len());
         let sphere = &all[place];
         let (center, radius) =
             (Vec3::from_array(sphere.position).as_dvec3(), f64::from(sphere.size));
@@ -86,8 +96,7 @@ fn rays(packed: &Packed, count: usize, far: f64) -> Vec<Ray> {
 fn shadows(packed: &Packed, rays: &[Ray], hits: &[Hit]) -> Vec<Shadow> {
     let shadow = |(index, (ray, hit)): (usize, (&Ray, &Hit))| {
         let [pick, far, ..] = draw(index, 9);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place")]
-        let any = word((pick * packed.spheres.len() as f64) as usize);
+        let any = word(place_of(pick, packed.spheres.len()));
         let met = f32::from_bits(hit.0);
         #[expect(clippy::cast_possible_truncation, reason = "any distance will do")]
         let distance = (4.0 * far * far) as f32;

@@ -221,9 +221,9 @@ fn distinct<T: Pod>(count: usize, first: u32) -> Vec<T> {
     values
 }
 
-fn row(v: [f32; 3], w: u32) -> Row {
-    let [x, y, z] = v.map(f32::to_bits);
-    [x, y, z, w]
+fn row(vector: [f32; 3], last: u32) -> Row {
+    let [x, y, z] = vector.map(f32::to_bits);
+    [x, y, z, last]
 }
 
 /// What `probe_echo_scene` writes.

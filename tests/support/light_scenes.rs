@@ -186,11 +186,11 @@ pub fn lamp_layer(count: u32, decades: f64) -> Scene {
 /// some in one place but for less than the device's coordinates tell: balls in each other, and
 /// a lamp with a ball before it and one behind it in the file.
 pub fn swarm() -> Scene {
-    let ball = |index| {
-        let key = SampleKey { pixel: 6, index };
+    let ball = |index: u32| {
+        let key = SampleKey { pixel: 6, index: u64::from(index) };
         let [x, y, z, size] = random_bits(key, 0, 0).map(unit_float);
         let place = DVec3::new(6.0 * x - 3.0, 3.0 * y, 6.0 * z - 4.0);
-        let tint = [0.9, 0.3 + 0.3 * (index % 3) as f64, 0.8];
+        let tint = [0.9, 0.3 + 0.3 * f64::from(index % 3), 0.8];
         let surface = if index % 4 == 0 { glossy(0.8, 5.0) } else { colored(tint) };
         sphere(place, 0.03 * 12_f64.powf(size * size), surface)
     };

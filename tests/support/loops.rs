@@ -149,8 +149,7 @@ pub fn word(count: usize) -> u32 {
 }
 
 fn row(v: Vec3, w: u32) -> Row {
-    let [x, y, z] = v.to_array().map(f32::to_bits);
-    [x, y, z, w]
+    [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w]
 }
 
 fn rows_of(rays: &[Ray]) -> Vec<Row> {
