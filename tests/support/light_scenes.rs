@@ -191,7 +191,7 @@ pub fn swarm() -> Scene {
         let [x, y, z, size] = random_bits(key, 0, 0).map(unit_float);
         let place = DVec3::new(6.0 * x - 3.0, 3.0 * y, 6.0 * z - 4.0);
         let tint = [0.9, 0.3 + 0.3 * f64::from(index % 3), 0.8];
-        let surface = if index % 4 == 0 { glossy(0.8, 5.0) } else { colored(tint) };
+        let surface = if index.is_multiple_of(4) { glossy(0.8, 5.0) } else { colored(tint) };
         sphere(place, 0.03 * 12_f64.powf(size * size), surface)
     };
     let shell = |i: u32, surface| sphere([0.5, 1.5, 1.5], 0.6 - 1e-10 * f64::from(i), surface);
