@@ -80,7 +80,5 @@ fn add_sample(word: u32, radiance: vec3<f32>) {
     carries |= add_pair(word + 3u, g) << 5u;
     carries |= add_pair(word + 6u, b) << 8u;
     carries |= add_word(word + 11u, squared.z, add_pair(word + 9u, squared.xy)) << 12u;
-    for (; carries != 0u; carries &= carries - 1u) {
-        atomicAdd(&film[word + firstTrailingBit(carries)], 1u);
-    }
+    add_carries(word, carries);
 }

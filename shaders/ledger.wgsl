@@ -21,13 +21,10 @@ fn exceeds_bound(radiance: vec3<f32>) -> bool {
     return any(bitcast<vec3<u32>>(radiance) > vec3<u32>(scene.bound_bits));
 }
 
-// The loop is for the samples that are valid: a group of invocations without invalid
-// ones leaves it at once, where straight-line stores would all be gone through.
 fn record_invalid(key: SampleKey, sample: Sample) {
     let slot = atomicAdd(&ledger.count, 1u);
     let address = vec4<u32>(key.pixel, key.index_low, key.index_high, u32(sample.finished));
-    let radiance = vec4<u32>(bitcast<vec3<u32>>(sample.radiance), 0u);
-    for (var i = 0u; i < RECORD_WORDS && slot < LEDGER_RECORDS; i++) {
-        ledger.records[slot * RECORD_WORDS + i] = select(address, radiance, i >= 4u)[i & 3u];
+    if slot < LEDGER_RECORDS {
+        write_record(slot * RECORD_WORDS, address, bitcast<vec3<u32>>(sample.radiance));
     }
 }

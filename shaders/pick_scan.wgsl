@@ -40,6 +40,6 @@ fn scan_for_light(point: SurfacePoint, key: SampleKey, bounce: u32) -> Pick {
             break;
         }
     }
-    unfinished = unfinished || pick.light == NO_SPHERE;
+    unfinished = unfinished || (i < scene.light_count && !(u < sum));
     return pick;
 }

@@ -62,9 +62,9 @@ impl Command {
         }
     }
 
-    /// Whether no kernel may come out of a driver's cache.
+    /// Whether no kernel may come out of a driver's cache of earlier runs.
     pub fn compiles_afresh(&self) -> bool {
-        matches!(self, Self::Explain(_))
+        matches!(self, Self::Explain(args) if !args.wgsl && !args.spirv)
     }
 }
 

@@ -91,10 +91,8 @@ fn kernels(specialised: &Facts, general: &Facts, measured: Option<&Measured>) ->
         columns("SPIR-V", both.map(|facts| bytes(facts.spirv_bytes as u64))),
     ];
     if let Some(measured) = measured {
-        let milliseconds = |seconds: cost::Measured| interval(seconds.scaled(1e3), "ms");
-        let nanoseconds = |seconds: cost::Measured| interval(seconds.scaled(1e9), "ns");
-        lines.push(columns("compile time", measured.compile_seconds.map(milliseconds)));
-        lines.push(columns("time per sample", measured.seconds_per_sample.map(nanoseconds)));
+        lines.push(columns("compile time", measured.compile_seconds.map(time)));
+        lines.push(columns("time per sample", measured.seconds_per_sample.map(time)));
     }
     lines.push("on the device".to_owned());
     lines.extend(parts(both).into_iter().map(|(label, pair)| columns(label, pair)));
@@ -117,6 +115,14 @@ fn parts(both: [&Facts; 2]) -> Vec<(&'static str, [String; 2])> {
     labels.into_iter().map(|label| (label, both.map(|facts| of(facts, label)))).collect()
 }
 
+/// Seconds with the ends of their interval, in the smallest unit of which they are not many.
+fn time(seconds: cost::Measured) -> String {
+    const UNITS: [(f64, &str); 3] = [(1e9, "ns"), (1e6, "µs"), (1e3, "ms")];
+    let fits = |&&(scale, _): &&(f64, &str)| seconds.high * scale < 1e4;
+    let &(scale, unit) = UNITS.iter().find(fits).unwrap_or(&(1.0, "s"));
+    interval(seconds.scaled(scale), unit)
+}
+
 /// A value with the ends of its interval.
 fn interval(measured: cost::Measured, unit: &str) -> String {
     let [value, low, high] =
@@ -132,8 +138,8 @@ fn findings(device: &Description, measured: &Measured) -> String {
             "measured",
             &format!(
                 "{rounds} rounds in turns at {width}x{height}, {spp} samples per pixel: medians \
-                 with 95\u{a0}% intervals; compiled afresh up to the end of the first \
-                 dispatch, {compilations}\u{a0}times: medians with extremes"
+                 with 95\u{a0}% intervals; fresh compilations of each up to the end \
+                 of the first dispatch, {compilations} in all: medians with extremes"
             ),
         ),
         row_of_finding("films", &films(measured)),
@@ -191,4 +197,31 @@ fn wrapped(text: &str, indent: usize) -> String {
         }
     }
     lines.join("\n").replace('\u{a0}', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COLUMN, time, wrapped};
+    use crate::cost::Measured;
+
+    #[test]
+    fn times_fit_their_column() {
+        let table = [
+            (82.4e-9, "82.4 (80.3 .. 84.5) ns"),
+            (1.33e-3, "1330 (1297 .. 1363) µs"),
+            (2.677, "2677 (2610 .. 2744) ms"),
+            (75.0, "75.0 (73.1 .. 76.9) s"),
+        ];
+        for (seconds, text) in table {
+            let shown = time(Measured::around(seconds, 0.025 * seconds));
+            assert_eq!(shown, text);
+            assert!(shown.chars().count() < COLUMN);
+        }
+    }
+
+    #[test]
+    fn lines_do_not_end_at_a_no_break_space() {
+        let text = format!("{} 95\u{a0}%", "x".repeat(76));
+        assert_eq!(wrapped(&text, 0), format!("{}\n95 %", "x".repeat(76)));
+    }
 }

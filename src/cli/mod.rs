@@ -33,6 +33,7 @@ use args::{Cli, Command};
 use clap::Parser;
 use std::io::IsTerminal;
 use std::process::ExitCode;
+use tempfile::TempDir;
 
 /// Everything was done.
 const DONE: u8 = 0;
@@ -62,7 +63,15 @@ fn refuse<T>(message: impl std::fmt::Display) -> Result<T, Refusal> {
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
-    environment::prepare(cli.command.threads(), cli.command.compiles_afresh());
+    let afresh = cli.command.compiles_afresh().then(tempfile::tempdir).transpose();
+    let cache = match afresh {
+        Ok(folder) => folder,
+        Err(error) => {
+            streams::message(&format!("error: cannot make a folder for compiled kernels: {error}"));
+            return ExitCode::from(REFUSED);
+        }
+    };
+    environment::prepare(cli.command.threads(), cache.as_ref().map(TempDir::path));
     report_panics();
     let ended = std::panic::catch_unwind(|| match &cli.command {
         Command::Render(args) => render::run(args),

@@ -70,6 +70,9 @@ impl SceneBuffers {
 /// The light tree's nodes have numbers that an `f32` holds.
 const MOST_LIGHT_NODES: u64 = 1 << 24;
 
+/// Nodes that wait have 24 bits for their place.
+const MOST_NODES: u64 = 1 << 24;
+
 /// Refuses more spheres, or more lights, than fit into one binding.
 fn check_size(gpu: &Gpu, packed: &Packed) -> Result<(), TraceError> {
     let limits = gpu.device().limits();
@@ -77,6 +80,7 @@ fn check_size(gpu: &Gpu, packed: &Packed) -> Result<(), TraceError> {
     let spheres = binding / size_of::<layout::Sphere>() as u64;
     let nodes = (binding / size_of::<layout::LightNode>() as u64).min(MOST_LIGHT_NODES);
     check(gpu, "spheres", packed.spheres.len(), spheres)?;
+    check(gpu, "nodes in its hierarchy", packed.nodes.len(), MOST_NODES)?;
     check(gpu, "lights", packed.light_tree.len() / 2, nodes / 2)
 }
 

@@ -102,6 +102,12 @@ impl Kernel {
         let mut text = self.path();
         text.push(follow(&self.steps(), self.loads()));
         text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("ledger"));
+        // Loops among few spheres are short: no driver cuts them short.
+        if self.written.is_some() {
+            text.add(fragment!("carry_loop")).add(fragment!("record_loop"));
+        } else {
+            text.add(fragment!("carry_lines")).add(fragment!("record_lines"));
+        }
         text.push(tile);
         text.add(fragment!("render"));
         text.into_wgsl()
@@ -388,7 +394,9 @@ fn probe(hierarchy: bool, stack: u32) -> String {
     .path();
     text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("probe"));
     if hierarchy {
-        text.add(fragment!("probe_hierarchy"));
+        text.add(fragment!("carry_lines")).add(fragment!("probe_hierarchy"));
+    } else {
+        text.add(fragment!("carry_loop"));
     }
     text.into_wgsl()
 }

@@ -12,12 +12,13 @@ const LINES: u64 = 4096;
 
 /// Most turns that a ray is to be reckoned with. A turn looks at one node, at some spheres, or
 /// at both, so that there are never more than nodes. In large hierarchies, where no ray comes
-/// near that, it is the most nodes that a line goes through, among many lines through two
-/// spheres each: a ray ends where it hits something, a line has no ends.
+/// near that, it is twice the most nodes that a line goes through, among many lines through two
+/// spheres each: a ray ends where it hits something, a line has no ends; but the kernel's boxes
+/// are a little larger, and not every line is tried.
 pub(super) fn most_turns(hierarchy: &Hierarchy, spheres: &[layout::Sphere]) -> u64 {
     let nodes = hierarchy.nodes().len();
-    let most = if nodes <= FEW_NODES { nodes } else { hierarchy.most_met(&lines(spheres)) };
-    most as u64
+    let most = if nodes <= FEW_NODES { nodes } else { 2 * hierarchy.most_met(&lines(spheres)) };
+    most.min(nodes) as u64
 }
 
 /// Lines through the centres of two spheres, from all over the scene.

@@ -7,6 +7,7 @@ use crate::hierarchy::TooManyPairs;
 use crate::scene::{Scene, Sphere, Surface};
 use crate::viewpoint::{Viewpoint, corner_angle};
 use glam::DVec3;
+use std::sync::{Mutex, PoisonError};
 
 /// A sphere by itself is seen true down to this share of the reach of its coordinates, in
 /// `f32`. Miss distances are off by some u of the reach, in both directions; the area seen
@@ -29,6 +30,12 @@ pub(super) const MOVED: f64 = 5e-4;
 
 /// What is smaller than this share of the picture, or of the distance from a light, is a speck.
 const SPECK: f64 = 0.01;
+
+/// Share of the picture that all specks together may show wrong.
+const OVERLOOKED: f64 = 1e-4;
+
+/// Among more lights no speck is looked for.
+const MOST_LIGHTS: usize = 1000;
 
 /// A rim for which this field of view would be too narrow, in radians, is one of a sphere
 /// that is too near.
@@ -62,6 +69,8 @@ pub(super) struct Judge<'a> {
     arithmetic: Arithmetic,
     /// Numbers of the spheres that hold the camera, ascending.
     inside: Vec<usize>,
+    /// Those that emit.
+    lights: Vec<&'a Sphere>,
     /// How far from the focus rays may start: the extent, where those of the camera do, or the
     /// far side of the smallest wall around it.
     rays_from: f64,
@@ -82,6 +91,11 @@ impl<'a> Judge<'a> {
             viewpoint,
             arithmetic,
             inside: around().map(Sphere::ordinal).collect(),
+            lights: scene
+                .spheres()
+                .iter()
+                .filter(|sphere| matches!(sphere.surface(), Surface::Emitter(_)))
+                .collect(),
             rays_from: enclosing.unwrap_or(0.0).max(camera),
         }
     }
@@ -109,8 +123,24 @@ impl<'a> Judge<'a> {
     fn first_pair(&self) -> Option<Fault<'a>> {
         // Where two meet, neither's reach is more than some three times the other's.
         let margin = |sphere: &Sphere| 8.0 * self.share(FINEST) * self.reach(sphere);
-        let judge = |small, large| self.judge_pair(small, large);
-        match first_close_pair(self.scene.spheres(), self.viewpoint.focus(), margin, judge) {
+        let overlooked = Mutex::new(0.0);
+        let pairs = |judge: &(dyn Fn(&'a Sphere, &'a Sphere) -> Option<Fault<'a>> + Sync)| {
+            first_close_pair(self.scene.spheres(), self.viewpoint.focus(), margin, judge)
+        };
+        let first = pairs(&|small, large| {
+            let fault = self.judge_pair(small, large)?;
+            let Some(share) = self.speck(small, large, &fault) else { return Some(fault) };
+            *overlooked.lock().unwrap_or_else(PoisonError::into_inner) += share;
+            None
+        });
+        let overlooked = overlooked.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let first = match first {
+            Ok(None) if overlooked > OVERLOOKED => {
+                pairs(&|small, large| self.judge_pair(small, large))
+            }
+            first => first,
+        };
+        match first {
             Ok(first) => first,
             Err(TooManyPairs) => {
                 self.scene.spheres().first().map(|sphere| Fault::Crowded { sphere })
@@ -118,36 +148,39 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Two spheres that touch, overlap or nearly do.
+    /// Two spheres that touch, overlap or nearly do. Of two with the same surface, but for lights,
+    /// which are sampled one by one, it is all one which is seen.
     fn judge_pair(&self, small: &'a Sphere, large: &'a Sphere) -> Option<Fault<'a>> {
         let inside = [small, large].map(|sphere| self.is_inside(sphere));
-        let touch = touch(small, large, inside, self)?;
-        if !matches!(touch, Touch::Close(_)) && self.is_speck(small, large) {
-            return None;
-        }
-        match touch {
+        let emits = matches!(small.surface(), Surface::Emitter(_));
+        let alike = small.surface() == large.surface() && inside[0] == inside[1] && !emits;
+        match touch(small, large, inside, self)? {
             Touch::Close(limit) => Some(Fault::Close { small, large, limit }),
+            _ if alike => None,
             Touch::Hidden(limit) => Some(Fault::Hidden { small, large, limit }),
             Touch::Coincident(limit) => Some(Fault::Coincident { small, large, limit }),
         }
     }
 
-    /// Whether neither of two spheres emits, and the smaller one is a speck as seen by the camera
-    /// and by every light: which part of it shows changes the picture by less than its area,
-    /// 3e-4 of it. Where millions of spheres lie at random, some nearly hide others.
-    fn is_speck(&self, small: &Sphere, large: &Sphere) -> bool {
+    /// The share of the picture that is shown wrong of a sphere that is nearly hidden in another
+    /// one, where that may be overlooked: neither emits, and it is a speck as seen by the camera
+    /// and by every light. Where a million spheres lie at random, some nearly hide others.
+    fn speck(&self, small: &Sphere, large: &Sphere, fault: &Fault<'_>) -> Option<f64> {
         let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
-        let from = |point: DVec3| (point.distance(small.center()) - small.radius()).max(0.0);
-        let camera = self.scene.camera();
-        let width = 2.0 * (camera.vertical_fov() / 2.0).tan() * from(camera.position());
+        if !matches!(fault, Fault::Hidden { .. }) || emits(small) || emits(large) {
+            return None;
+        }
+        let (camera, radius) = (self.scene.camera(), small.radius());
+        let distance = (camera.position().distance(small.center()) - radius).max(0.0);
+        let width = 2.0 * (camera.vertical_fov() / 2.0).tan() * distance;
         let height = |light: &Sphere| {
-            (light.center().distance(small.center()) - light.radius()).abs() - small.radius()
+            (light.center().distance(small.center()) - light.radius()).abs() - radius
         };
-        let mut lights = self.scene.spheres().iter().filter(|sphere| emits(sphere));
-        !emits(small)
-            && !emits(large)
-            && small.radius() <= SPECK * width
-            && lights.all(|light| small.radius() <= SPECK * height(light))
+        let is_speck = radius <= SPECK * width
+            && self.lights.len() <= MOST_LIGHTS
+            && self.lights.iter().all(|light| radius <= SPECK * height(light));
+        let error = self.step(ERROR, small, large, small.center());
+        is_speck.then_some(std::f64::consts::TAU * radius * error / (width * width))
     }
 
     /// The rim of a sphere in the picture is seen off by the error δ of the camera's place over
