@@ -130,10 +130,11 @@ pub(super) fn row(text: &str, index: usize) -> Option<Line<'_>> {
     Lines::new(text).filter(is_data).nth(index + 1)
 }
 
-/// Whether a line is neither blank nor a comment.
+/// Whether a line is neither blank nor a comment. Spreadsheets write rows without entries as
+/// commas.
 fn is_data(line: &Line<'_>) -> bool {
-    let text = line.text.trim_start();
-    !text.is_empty() && !text.starts_with('#')
+    let text = line.text.trim_start_matches([' ', '\t', ',']);
+    !text.is_empty() && !line.text.trim_start().starts_with('#')
 }
 
 /// Which of [`COLUMNS`] each name of the header is.
@@ -141,6 +142,10 @@ fn columns(header: &Line<'_>, names: &[Field<'_>]) -> Result<Vec<Option<usize>>,
     if names.iter().all(|name| name.number().is_some()) {
         let wrong = Diagnostic::new(header.span(), "the header is missing");
         return Err(wrong.label("this is a row of numbers").note(HEADER).note(COMMENTS).into());
+    }
+    if header.text.to_ascii_lowercase().starts_with("sep=") {
+        let wrong = Diagnostic::new(header.span(), "this line is no header");
+        return Err(wrong.label("Excel reads it, others do not: take it out").note(HEADER).into());
     }
     if let ([only], Some(found)) = (names, header.text.chars().find(|c| ";\t ".contains(*c)))
         && only.span() == Field::new(header.start, header.text).span()
