@@ -78,17 +78,16 @@ fn a_picture_that_does_not_fit_is_refused_at_once() {
 }
 
 #[test]
-fn many_spheres_render_on_the_cpu() {
+fn many_spheres_render_on_every_device() {
     let folder = Folder::new();
     let sphere = |i| {
         format!("\n[[spheres]]\ncenter = [0.0, -{i}.0, 0.0]\nradius = 1.0\nmaterial = \"grey\"\n")
     };
     let many: String = (100..100 + 600 - 2).map(sphere).collect();
     folder.write("many.toml", &(SCENE.to_owned() + &many));
-    let ended = folder.candor("render many.toml --device gpu");
-    ended.refused(&["the scene has 600 spheres", "at most 512", "--device cpu"]);
-    assert_eq!(folder.files(), ["many.toml"]);
-    folder.candor("render many.toml --device cpu --quiet").silently_done();
+    for device in ["gpu", "cpu"] {
+        folder.candor(&format!("render many.toml --device {device} --quiet")).silently_done();
+    }
 }
 
 #[test]

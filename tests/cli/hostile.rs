@@ -58,12 +58,15 @@ fn deep_nesting_and_long_lines_are_refused() {
 }
 
 #[test]
-fn more_spheres_than_a_device_takes_are_refused() {
+fn more_bounces_than_a_device_takes_are_refused() {
     let folder = Folder::new();
     let scene = std::fs::read_to_string(folder.path("scene.toml")).expect("it was written");
     let more = |i| format!("[[spheres]]\ncenter = [{i}, 9, 9]\nradius = 0.3\nemission = [1, 1, 1]");
     let more: Vec<String> = (0..2000).map(more).collect();
     folder.write("many.toml", &format!("{scene}{}", more.join("\n")));
-    folder.candor("render many.toml --device gpu --spp 1").refused(&["2002 spheres", "at most"]);
+    let paths = "--spp 1 --estimator mis --bounces 64";
+    let parts = ["64 bounces among 2002 spheres", "it takes fewer than", "--device cpu"];
+    folder.candor(&format!("render many.toml --device gpu {paths}")).refused(&parts);
+    folder.candor("render many.toml --device gpu --spp 1 --quiet -o gpu.png").with_code(0);
     folder.candor("render many.toml --device cpu --spp 1 --quiet -o many.png").with_code(0);
 }
