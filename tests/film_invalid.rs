@@ -9,11 +9,13 @@ mod support {
 }
 
 use candor::bound::sample_scale;
+use candor::effects::{Effect, Effects};
 use candor::film::Film;
+use candor::gpu::GpuTracer;
 use candor::scene::Scene;
 use candor::tracer::{InvalidReason, InvalidSample, Ledger};
 use support::scenes::{classic, many, size};
-use support::tracers::{film, kernel, mutant, on_device, trace, with_kernel};
+use support::tracers::{film, kernel, mutant, on_device, trace, with_effects, with_kernel};
 
 const FIRST: u64 = (1 << 32) - 3;
 const WIDTH: u32 = 13;
@@ -209,9 +211,8 @@ fn a_path_cut_short_is_unfinished() {
         // One bounce less, properly ended, leaves the same light.
         let packed = support::scenes::packed(&scene);
         let shorter = kernel(&under(bounces - 1));
-        let mut tracer =
-            candor::gpu::GpuTracer::with_kernel(&scene, support::gpu::open(), &packed, &shorter)
-                .expect("the device takes the kernel");
+        let mut tracer = GpuTracer::with_kernel(&scene, support::gpu::open(), &packed, &shorter)
+            .expect("the device takes the kernel");
         assert!(film(&mut tracer, &[0..256]) == cut, "{bounces}");
     }
 }
@@ -239,6 +240,14 @@ fn the_longest_path_among_the_most_spheres_is_finished() {
     };
     let free = candor::kernel::SPHERE_CAPACITY - spheres.len();
     spheres.extend((0..).map(speck).take(free));
-    let scene = support::scenes::seen([1.0, 0.5, 0.25], [2.0, 1.0, 0.0], size(16, 16), 64, spheres);
-    film(&mut on_device(&scene), &[0..4]);
+    let scene = |bounces| {
+        let (eye, target) = ([1.0, 0.5, 0.25], [2.0, 1.0, 0.0]);
+        support::scenes::seen(eye, target, size(16, 16), bounces, spheres.clone())
+    };
+    let loops = Effects::general(&scene(64)).without(Effect::Hierarchy);
+    film(&mut with_effects(&scene(64), loops), &[0..4]);
+    // The bound on what a hierarchy may take allows fewer.
+    let tracer = |bounces| GpuTracer::new(&scene(bounces), support::gpu::open()).ok();
+    let mut most = (48..=64).rev().find_map(tracer).expect("48 bounces are allowed");
+    film(&mut most, &[0..4]);
 }

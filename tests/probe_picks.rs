@@ -26,11 +26,12 @@ const U: f64 = 1.0 / (1 << 24) as f64;
 /// Chance that a correct kernel fails the test in distribution.
 const FAMILY: f64 = 1e-6;
 
-/// The scene with the tree that the probe knows besides the scan.
+/// The scene with the tree that the probe knows besides the scan, and without a hierarchy, which
+/// it does not know.
 fn packed(scene: &Scene) -> Packed {
     let viewpoint = Viewpoint::of(scene);
     let effects = Effects::of(scene, &viewpoint).with(Effect::LightTree);
-    pack(scene, &viewpoint, effects, sample_scale(scene))
+    pack(scene, &viewpoint, effects.without(Effect::Hierarchy), sample_scale(scene))
 }
 
 /// A point that asks for a light.
