@@ -281,7 +281,7 @@ fn a_wrong_connection_shows_at_its_vertex() {
         let light = trail.segments[0].connection.map(|found| found.light);
         light.is_some_and(|light| light > 1)
     });
-    let (_, found) = mutated(&lamps, last, "u < sum", "u < sum + 2.0");
+    let (_, found) = mutated(&lamps, last, "if u < sum {", "if u < sum + 2.0 {");
     assert_eq!(found, Some(at(1, Cause::Light)));
 }
 

@@ -107,13 +107,14 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     } else {
         Vec::new()
     };
+    let turns = most_turns(&hierarchy, wide.nodes.len(), &small);
     Packed {
         scene: header,
         spheres: packed,
         lights,
         nodes: wide.nodes,
         stack: wide.stack,
-        turns: most_turns(&hierarchy, &small),
+        turns,
         light_tree,
         forms: forms.to_vec(),
     }

@@ -4,21 +4,23 @@ use super::layout;
 use crate::hierarchy::Hierarchy;
 use glam::DVec3;
 
-/// Hierarchies of up to this many nodes may be gone through whole.
+/// Hierarchies of up to this many nodes and leaves may be gone through whole.
 const FEW_NODES: usize = 4096;
 
 /// Lines that are tried in larger ones.
 const LINES: u64 = 4096;
 
-/// Most turns that a ray is to be reckoned with. A turn looks at one node, at some spheres, or
-/// at both, so that there are never more than nodes. In large hierarchies, where no ray comes
-/// near that, it is twice the most nodes that a line goes through, among many lines through two
-/// spheres each: a ray ends where it hits something, a line has no ends; but the kernel's boxes
-/// are a little larger, and not every line is tried.
-pub(super) fn most_turns(hierarchy: &Hierarchy, spheres: &[layout::Sphere]) -> u64 {
-    let nodes = hierarchy.nodes().len();
-    let most = if nodes <= FEW_NODES { nodes } else { 2 * hierarchy.most_met(&lines(spheres)) };
-    most.min(nodes) as u64
+/// Most turns that a ray is to be reckoned with, in a hierarchy that the kernel has `wide` nodes
+/// of. A turn looks at one node, at the spheres of a leaf, or at both, so that there are never
+/// more than nodes and leaves. In large hierarchies, where no ray comes near that, it is twice the
+/// most nodes that a line goes through, among many lines through two spheres each: a ray ends
+/// where it hits something, a line has no ends; but the kernel's boxes are a little larger, and
+/// not every line is tried.
+pub(super) fn most_turns(hierarchy: &Hierarchy, wide: usize, spheres: &[layout::Sphere]) -> u64 {
+    let leaves = hierarchy.nodes().iter().filter(|node| node.count > 0).count();
+    let all = wide + leaves;
+    let most = if all <= FEW_NODES { all } else { 2 * hierarchy.most_met(&lines(spheres)) };
+    most.min(all) as u64
 }
 
 /// Lines through the centres of two spheres, from all over the scene.
