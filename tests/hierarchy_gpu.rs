@@ -155,10 +155,9 @@ enum Fault {
     Stack,
 }
 
-/// Each with an arrangement that tells. Boxes without the room that they have beside the padding
-/// are told by none: their bytes are rounded outwards by more than that. (Of 3 · 10⁵ rays,
-/// spheres that fill their boxes' room lose no hit; without padding as well, they lose those
-/// that a lack of padding loses.)
+/// Each with an arrangement that tells. None tells boxes without the room that they have beside
+/// the padding, though 86,016 rays at fourteen of these arrangements were tried: bytes are
+/// rounded outwards by more than that, so it is the analysis alone that asks for it.
 const FAULTS: [(&str, &str, Fault); 7] = [
     (
         "boxes shrunk by 1 %",

@@ -233,7 +233,13 @@ const OTHER_MUTANTS: &[Mutant] = &[
         "PICK_BLOCKS: u32 = 0u",
         Judge::Lamps,
     ),
-    ("first light always", Explicit, "if u < sum {", "if true {", Judge::Crowd),
+    (
+        "first light always",
+        Explicit,
+        "unit_float(random_bits(key, PICK_BLOCKS + bounce).x)",
+        "0.0 * unit_float(random_bits(key, PICK_BLOCKS + bounce).x)",
+        Judge::Crowd,
+    ),
     (
         "walls hide as balls",
         Explicit,

@@ -335,12 +335,19 @@ fn the_longest_path_is_replayed_whole() {
     };
     let free = candor::kernel::SPHERE_CAPACITY - spheres.len();
     spheres.extend((0..).map(speck).take(free));
-    let scene = seen([1.0, 0.5, 0.25], [2.0, 1.0, 0.0], size(16, 16), 64, spheres);
     let gpu = support::gpu::open();
+    // The bound on what a hierarchy may take allows somewhat less than 64 bounces.
+    let scene = |bounces| {
+        let (eye, target) = ([1.0, 0.5, 0.25], [2.0, 1.0, 0.0]);
+        seen(eye, target, size(16, 16), bounces, spheres.clone())
+    };
+    let is_taken = |bounces: &u32| Replayer::new(&scene(*bounces), &gpu).is_ok();
+    let most = (48..=64).rev().find(is_taken).expect("48 bounces are allowed");
+    let scene = scene(most);
     let replayer = Replayer::new(&scene, &gpu).expect("the device takes the scene");
     let trails = (0..8).map(|pixel| replayer.replay(pixel, 1).expect("a path"));
     let ends: Vec<_> = trails.map(|trail| (trail.ending, trail.segments.len())).collect();
-    assert!(ends.contains(&(Ending::Limit, 65)), "{ends:?}");
+    assert!(ends.contains(&(Ending::Limit, most as usize + 1)), "{ends:?}");
     assert!(ends.iter().all(|&(ending, _)| ending != Ending::Unfinished), "{ends:?}");
 }
 
