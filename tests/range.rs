@@ -215,7 +215,8 @@ fn what_rounding_would_decide_is_refused() {
         }
     }
     // A lining of a room that holds the camera, and floors that touch each other.
-    let lining = [10.0, 10.0 - 1e-6].map(|r| sphere(DVec3::ZERO, 2.0 * r, diffuse(0.5)));
+    let lining = [(10.0, 0.5), (10.0 - 1e-6, 0.6)];
+    let lining = lining.map(|(r, rho)| sphere(DVec3::ZERO, 2.0 * r, diffuse(rho)));
     apart(&with(lining.to_vec()), close);
     apart(&with(vec![sphere([0.0, -1e7 - 3.0, 0.0], 1e7, diffuse(0.1))]), close);
     // A floor that crosses the other at 1e-5 radians.
@@ -230,6 +231,23 @@ fn what_rounding_would_decide_is_refused() {
     let hollow =
         with(vec![sphere(DVec3::ZERO, 1e3, diffuse(0.5)), sphere(AIR, 1e-3, diffuse(0.5))]);
     apart(&hollow, "is too small for");
+}
+
+/// A ball of which a sliver of 3e-4 shows: refused where it is large, and over in the picture
+/// where it is a speck; likewise where the other one is like it, and both are one to the eye.
+#[test]
+fn what_is_not_seen_is_in_range() {
+    let pair = |size: f64, rho| {
+        let (radius, off) = (size * (1.0 - 5e-3), size * 5e-3 + 3e-4);
+        let hidden = sphere(AIR + off * DVec3::X, radius, diffuse(rho));
+        judged(&with(vec![sphere(AIR, size, diffuse(0.8)), hidden]), Arithmetic::Single)
+    };
+    let refusal = pair(0.2, 0.3).expect_err("a sliver of another colour");
+    assert!(refusal.what.contains("is hidden by"), "{refusal}");
+    assert_eq!((pair(0.2, 0.8), pair(0.01, 0.3)), (Ok(()), Ok(())));
+    // Specks that lie in each other are told, whatever their size.
+    let inside = [sphere(AIR, 0.02, diffuse(0.8)), sphere(AIR, 0.02 - 1e-7, diffuse(0.3))];
+    judged(&with(inside.to_vec()), Arithmetic::Single).expect_err("rounding says which is seen");
 }
 
 /// The twin's centre form loses the surface of a wall that is huge even for `f64`, and the
