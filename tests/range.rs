@@ -244,7 +244,7 @@ fn what_is_not_seen_is_in_range() {
     };
     let refusal = pair(0.2, 0.3).expect_err("a sliver of another colour");
     assert!(refusal.what.contains("is hidden by"), "{refusal}");
-    assert_eq!((pair(0.2, 0.8), pair(0.01, 0.3)), (Ok(()), Ok(())));
+    assert_eq!((pair(0.2, 0.8), pair(4e-3, 0.3)), (Ok(()), Ok(())));
     // Specks that lie in each other are told, whatever their size.
     let inside = [sphere(AIR, 0.02, diffuse(0.8)), sphere(AIR, 0.02 - 1e-7, diffuse(0.3))];
     judged(&with(inside.to_vec()), Arithmetic::Single).expect_err("rounding says which is seen");
