@@ -21,15 +21,15 @@ from classic import ROOT
 from machine import keep_to_cores, processor, system, tell
 from mean import Mean
 
-COUNTS = [1000, 10_000, 100_000, 1_000_000]
+COUNTS = [1000, 100_000, 1_000_000]
 
 # Mitsuba takes so many bytes for each `sphere` of a scene, measured at 100,000.
 BYTES_PER_SPHERE = 20_000
 
 # Renders of each, their side and samples a pixel.
-TURNS = 6
+TURNS = 4
 SIDE = 256
-SPP = 32
+SPP = 16
 
 # The image means must agree within so many standard errors of their difference.
 AGREES = 5.0
