@@ -164,7 +164,7 @@ impl Kernel {
     }
 
     /// What advances a path by one segment.
-    fn path(&self) -> Text {
+    pub(super) fn path(&self) -> Text {
         let mut text = Text::default();
         self.scene(&mut text);
         self.hits(&mut text);
@@ -363,40 +363,4 @@ impl Kernel {
     fn only_light(&self) -> Option<u32> {
         (self.picks() == (false, false)).then_some(self.light)
     }
-}
-
-/// The WGSL of the probe: entry points that run single functions of the kernel over a
-/// table of inputs, for the tests.
-#[must_use]
-pub fn probe_source() -> String {
-    probe(false, 0)
-}
-
-/// The same with a hierarchy in which up to `stack` items wait; spheres and lights are then in
-/// storage buffers.
-#[must_use]
-pub fn hierarchy_probe_source(stack: u32) -> String {
-    probe(true, stack)
-}
-
-fn probe(hierarchy: bool, stack: u32) -> String {
-    let effects = if hierarchy { Effects::ALL } else { Effects::ALL.without(Effect::Hierarchy) };
-    let mut text = Kernel {
-        size: ImageSize::new(512, 512).expect("a picture"),
-        bounces: 2,
-        estimator: Estimator::Mis,
-        effects,
-        written: None,
-        stored: hierarchy,
-        light: 0,
-        stack,
-    }
-    .path();
-    text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("probe"));
-    if hierarchy {
-        text.add(fragment!("carry_lines")).add(fragment!("probe_hierarchy"));
-    } else {
-        text.add(fragment!("carry_loop"));
-    }
-    text.into_wgsl()
 }

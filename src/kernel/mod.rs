@@ -3,6 +3,7 @@
 mod compose;
 pub mod layout;
 mod pack;
+mod probes;
 mod search;
 mod spirv;
 mod text;
@@ -12,11 +13,10 @@ mod unrolled;
 mod validate;
 mod wide;
 
-pub use compose::{
-    Kernel, UNROLLED_BOUNCES, UNROLLED_SPHERES, hierarchy_probe_source, probe_source,
-};
+pub use compose::{Kernel, UNROLLED_BOUNCES, UNROLLED_SPHERES};
 pub use layout::SPHERE_CAPACITY;
 pub use pack::{KernelUnits, Packed, pack};
+pub use probes::{hierarchy_probe_source, probe_source};
 pub use spirv::spirv;
 pub use tile::Tile;
 pub use validate::validate;
