@@ -21,10 +21,19 @@ fn exceeds_bound(radiance: vec3<f32>) -> bool {
     return any(bitcast<vec3<u32>>(radiance) > vec3<u32>(scene.bound_bits));
 }
 
+// In straight lines, as the carries of the film.
 fn record_invalid(key: SampleKey, sample: Sample) {
     let slot = atomicAdd(&ledger.count, 1u);
-    let address = vec4<u32>(key.pixel, key.index_low, key.index_high, u32(sample.finished));
     if slot < LEDGER_RECORDS {
-        write_record(slot * RECORD_WORDS, address, bitcast<vec3<u32>>(sample.radiance));
+        let start = slot * RECORD_WORDS;
+        let radiance = bitcast<vec3<u32>>(sample.radiance);
+        ledger.records[start] = key.pixel;
+        ledger.records[start + 1u] = key.index_low;
+        ledger.records[start + 2u] = key.index_high;
+        ledger.records[start + 3u] = u32(sample.finished);
+        ledger.records[start + 4u] = radiance.x;
+        ledger.records[start + 5u] = radiance.y;
+        ledger.records[start + 6u] = radiance.z;
+        ledger.records[start + 7u] = 0u;
     }
 }

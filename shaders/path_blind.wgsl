@@ -1,19 +1,5 @@
 // One path that counts light only where it hits it by itself, as in the source.
 
-struct Path {
-    ray: Ray,
-    throughput: vec3<f32>,
-    // The sphere that the ray starts on.
-    leaving: u32,
-    radiance: vec3<f32>,
-    // Whether the path came to an end of its own.
-    finished: bool,
-}
-
-fn start(ray: Ray) -> Path {
-    return Path(ray, vec3<f32>(1.0), NO_SPHERE, vec3<f32>(0.0), false);
-}
-
 // Follows one segment and scatters at its end; whether the path goes on.
 fn advance(path: ptr<function, Path>, key: SampleKey, bounce: u32) -> bool {
     let ray = (*path).ray;

@@ -129,7 +129,7 @@ fn of_float(
     }
 }
 
-/// Everything that the kernel takes from `shaders/math.wgsl`, and the roots and quotients
+/// Everything that the kernel takes from its elementary functions, and the roots and quotients
 /// that it takes from WGSL. Arguments and bounds are derived in DESIGN.md, "Elementary
 /// functions".
 fn functions() -> Vec<Function> {

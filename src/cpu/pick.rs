@@ -1,5 +1,5 @@
 //! Which light is sampled: half of the time in proportion to a bound on what it can
-//! contribute, half of the time evenly, as in `shaders/pick_many.wgsl`; many are left to
+//! contribute, half of the time evenly, as in `shaders/pick_scan.wgsl`; many are left to
 //! [`walk`](super::walk).
 
 use super::light::{Cone, cone_of};

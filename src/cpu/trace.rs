@@ -1,5 +1,5 @@
 //! What every path needs: where it starts, what it hits, how it goes on; as in
-//! `shaders/trace.wgsl`.
+//! `shaders/camera.wgsl` and `surface.wgsl`.
 
 use super::interior::facing_normal;
 use super::material::{Scattering, scatter_cosine, scatter_diffuse, scatter_glossy};

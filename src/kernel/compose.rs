@@ -102,12 +102,6 @@ impl Kernel {
         let mut text = self.path();
         text.push(follow(&self.steps(), self.loads()));
         text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("ledger"));
-        // Loops among few spheres are short: no driver cuts them short.
-        if self.written.is_some() {
-            text.add(fragment!("carry_loop")).add(fragment!("record_loop"));
-        } else {
-            text.add(fragment!("carry_lines")).add(fragment!("record_lines"));
-        }
         text.push(tile);
         text.add(fragment!("render"));
         text.into_wgsl()
@@ -169,7 +163,7 @@ impl Kernel {
         self.scene(&mut text);
         self.hits(&mut text);
         if !self.scatters() {
-            text.add(fragment!("path_direct"));
+            text.add(fragment!("path")).add(fragment!("path_direct"));
             return text;
         }
         self.surface(&mut text);
@@ -178,7 +172,7 @@ impl Kernel {
             self.connecting(&mut text);
             text.add(fragment!("path_connected"));
         } else {
-            text.add(fragment!("path_blind"));
+            text.add(fragment!("path")).add(fragment!("path_blind"));
         }
         text
     }

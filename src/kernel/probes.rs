@@ -34,9 +34,7 @@ fn probe(hierarchy: bool, stack: u32) -> String {
     .path();
     text.add(fragment!("multiply")).add(fragment!("film")).add(fragment!("probe"));
     if hierarchy {
-        text.add(fragment!("carry_lines")).add(fragment!("probe_hierarchy"));
-    } else {
-        text.add(fragment!("carry_loop"));
+        text.add(fragment!("probe_hierarchy"));
     }
     text.into_wgsl()
 }
