@@ -146,7 +146,7 @@ fn print_saved(scenes: &[(String, Scene)], adapter: &Adapter, rounds: u64) -> Ve
         for estimator in Estimator::ALL {
             let scene = with_estimator(scene, estimator);
             let own = Effects::of(&scene, &Viewpoint::of(&scene));
-            let ratios = ratios(&scene, adapter, [general(&scene), own], rounds);
+            let ratios = ratios(&scene, adapter, [Effects::general(&scene), own], rounds);
             print!(" {} |", Middle::of(&ratios));
             if ratios.iter().all(|&ratio| ratio > 1.0 + SAME) {
                 slower.push(format!("{name} under {}", estimator.name()));
@@ -161,11 +161,11 @@ fn print_saved(scenes: &[(String, Scene)], adapter: &Adapter, rounds: u64) -> Ve
 fn print_costs(scenes: &[(String, Scene)], adapter: &Adapter, rounds: u64) {
     for (name, scene) in scenes {
         println!("\nWith one effect more ÷ specialised, {name}:\n\n{}", head("effect"));
-        for effect in [&OF_PATHS[..], &OF_LIGHTS].concat() {
+        for effect in Effect::all() {
             let cells = Estimator::ALL.map(|estimator| {
                 let scene = with_estimator(scene, estimator);
                 let own = Effects::of(&scene, &Viewpoint::of(&scene));
-                if own.has(effect) || !general(&scene).has(effect) {
+                if own.has(effect) || !Effects::general(&scene).has(effect) {
                     return String::new();
                 }
                 let ratios = ratios(&scene, adapter, [own, own.with(effect)], rounds);
@@ -176,31 +176,6 @@ fn print_costs(scenes: &[(String, Scene)], adapter: &Adapter, rounds: u64) {
             }
         }
     }
-}
-
-/// Effects that serve no light sampling, and those that do.
-const OF_PATHS: [Effect; 6] = [
-    Effect::Diffuse,
-    Effect::Glossy,
-    Effect::Factored,
-    Effect::Anchored,
-    Effect::Interior,
-    Effect::Hierarchy,
-];
-const OF_LIGHTS: [Effect; 5] = [
-    Effect::Connections,
-    Effect::LightScan,
-    Effect::LightTree,
-    Effect::FactoredLight,
-    Effect::AnchoredLight,
-];
-
-/// All effects, but for those of light sampling under an estimator that does not sample lights.
-fn general(scene: &Scene) -> Effects {
-    if scene.settings().estimator().samples_lights() {
-        return Effects::ALL;
-    }
-    OF_LIGHTS.into_iter().fold(Effects::ALL, Effects::without)
 }
 
 fn head(first: &str) -> String {

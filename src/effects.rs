@@ -2,7 +2,7 @@
 
 use crate::light_tree::SCANNED_LIGHTS;
 use crate::scene::{Estimator, Scene, Sphere, Surface};
-use crate::viewpoint::{Form, Viewpoint};
+use crate::viewpoint::{Form, Viewpoint, is_small};
 
 /// Scenes with more small spheres than this get a hierarchy over them; for fewer, going
 /// through all of them is faster (BENCHMARKS.md, "From one sphere to a million").
@@ -134,12 +134,11 @@ impl Seen<'_> {
     }
 
     fn emits(self) -> bool {
-        matches!(self.sphere.surface(), Surface::Emitter(_))
+        self.sphere.emits()
     }
 
-    /// Whether a hierarchy may hold it.
     fn is_small(self) -> bool {
-        self.form == Form::Factored && !self.inside
+        is_small(self.form, self.inside)
     }
 }
 
@@ -234,9 +233,7 @@ impl Effects {
     /// where there are none.
     #[must_use]
     pub fn general(scene: &Scene) -> Self {
-        let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
-        let samples_lights =
-            scene.settings().estimator().samples_lights() && scene.spheres().iter().any(emits);
+        let samples_lights = scene.settings().estimator().samples_lights() && scene.has_lights();
         let serves = |rule: &&Rule| samples_lights || !rule.samples_lights;
         RULES.iter().filter(serves).map(|rule| rule.effect).fold(Self::NONE, Self::with)
     }

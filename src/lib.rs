@@ -4,7 +4,7 @@
 //!
 //! [`scene`] → [`viewpoint`] → [`hierarchy`], [`light_tree`] → [`effects`], [`bound`], [`range`] →
 //! [`film`] → [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) →
-//! [`estimate`] → [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`explain`] → [`report`] →
+//! [`estimate`] → [`watch`], [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`explain`] → [`report`] →
 //! [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
@@ -35,3 +35,4 @@ pub mod trail;
 mod units;
 pub mod verify;
 pub mod viewpoint;
+pub mod watch;

@@ -58,10 +58,8 @@ pub struct LightTree {
 
 /// The lights' places in the scene, in the order of the file.
 pub fn places(scene: &Scene) -> impl Iterator<Item = usize> + '_ {
-    let emits = |(place, sphere): (usize, &Sphere)| {
-        matches!(sphere.surface(), Surface::Emitter(_)).then_some(place)
-    };
-    scene.spheres().iter().enumerate().filter_map(emits)
+    let spheres = scene.spheres().iter().enumerate();
+    spheres.filter(|(_, sphere)| sphere.emits()).map(|(place, _)| place)
 }
 
 /// Most iterations of loops over lights at one vertex: of scans, two to pick a light and one

@@ -23,8 +23,14 @@ fn under(scene: Scene, estimator: Estimator) -> Scene {
 }
 
 fn explained(scene: &Scene) -> Explanation {
-    Explanation::of(scene, &Version::specialised(scene), &Version::general(scene))
-        .expect("both kernels are valid")
+    let (viewpoint, [specialised, general]) = (Viewpoint::of(scene), versions(scene));
+    Explanation::of(scene, &viewpoint, &specialised, &general).expect("both kernels are valid")
+}
+
+/// The special kernel and the general one.
+fn versions(scene: &Scene) -> [Version; 2] {
+    let viewpoint = Viewpoint::of(scene);
+    [Version::specialised(scene, &viewpoint), Version::general(scene, &viewpoint)]
 }
 
 /// A 30 % saving among rounds that vary by more is none; the same saving in quiet rounds is one,
@@ -119,10 +125,8 @@ fn kernels_are_valid_and_measured() {
         for scene in [classic(size(8, 8)), many(size(8, 8))] {
             let scene = under(scene, estimator);
             let explanation = explained(&scene);
-            for (version, facts) in [
-                (Version::specialised(&scene), &explanation.specialised),
-                (Version::general(&scene), &explanation.general),
-            ] {
+            let facts = [&explanation.specialised, &explanation.general];
+            for (version, facts) in versions(&scene).into_iter().zip(facts) {
                 let wgsl = version.kernel.wgsl();
                 let (module, _) = validate(&wgsl).expect("a valid kernel");
                 assert_eq!(facts.functions, module.functions.len() + 1);
@@ -140,7 +144,7 @@ fn kernels_are_valid_and_measured() {
 #[test]
 fn bytes_on_the_device_are_those_of_the_tracer() {
     for scene in [classic(size(40, 30)), many(size(7, 5))] {
-        for version in [Version::specialised(&scene), Version::general(&scene)] {
+        for version in versions(&scene) {
             let parts = device_parts(&version.packed, scene.size());
             let wgsl = version.kernel.wgsl();
             let tracer =

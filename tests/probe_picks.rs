@@ -6,40 +6,22 @@
 mod support {
     pub mod gpu;
     pub mod light_scenes;
+    pub mod picks;
     pub mod scenes;
 }
 
-use candor::bound::sample_scale;
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
-use candor::effects::{Effect, Effects};
-use candor::gpu::probe::{Probe, Row};
-use candor::kernel::{Packed, layout, pack};
-use candor::scene::Scene;
-use candor::viewpoint::Viewpoint;
+use candor::kernel::{Packed, layout, probe_source};
 use glam::{DVec3, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use support::light_scenes::{forty_lights, in_light, joined_lights};
+use support::picks::{Point, ask, packed};
 
 const U: f64 = 1.0 / (1 << 24) as f64;
 
 /// Chance that a correct kernel fails the test in distribution.
 const FAMILY: f64 = 1e-6;
-
-/// The scene with the tree that the probe knows besides the scan, and without a hierarchy, which
-/// it does not know.
-fn packed(scene: &Scene) -> Packed {
-    let viewpoint = Viewpoint::of(scene);
-    let effects = Effects::of(scene, &viewpoint).with(Effect::LightTree);
-    pack(scene, &viewpoint, effects.without(Effect::Hierarchy), sample_scale(scene))
-}
-
-/// A point that asks for a light.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    position: Vec3,
-    normal: Vec3,
-}
 
 fn draw(index: u64, block: u32) -> [f64; 4] {
     random_bits(SampleKey { pixel: 6, index }, block, 0).map(unit_float)
@@ -69,22 +51,6 @@ fn points(packed: &Packed, count: usize) -> Vec<Point> {
 
 fn lights(packed: &Packed) -> Vec<layout::Sphere> {
     packed.lights.iter().map(|&place| packed.spheres[place as usize]).collect()
-}
-
-/// What the device answers: the chance asked for, the light picked and its chance.
-fn ask(packed: &Packed, questions: &[(Point, u32)]) -> Vec<(f32, u32, f32)> {
-    let gpu = support::gpu::open();
-    let probe = Probe::new(&gpu, packed).expect("the probe compiles");
-    let row = |v: Vec3, w: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w];
-    let rows: Vec<Row> = questions
-        .iter()
-        .flat_map(|(p, light)| [row(p.position, *light), row(p.normal, 0)])
-        .collect();
-    let found = probe.run("probe_pick", &rows, questions.len()).expect("the device runs");
-    found
-        .iter()
-        .map(|&[c, light, own, _]| (f32::from_bits(c), light, f32::from_bits(own)))
-        .collect()
 }
 
 /// height · brightest channel · largest cosine in the cone, by angles and in `f64`; and how
@@ -128,7 +94,7 @@ fn chances_are_those_of_the_bound_and_none_is_small() {
             .iter()
             .flat_map(|&p| packed.lights.iter().map(move |&light| (p, light)))
             .collect();
-        let found = ask(&packed, &questions);
+        let found = ask(&packed, &probe_source(), &questions);
         let (mut worst, mut least, mut differ) = (0.0_f64, 1.0_f64, 0);
         for (point, found) in points.iter().zip(found.chunks(count)) {
             let sum: f64 = found.iter().map(|f| f64::from(f.0)).sum();
@@ -165,7 +131,7 @@ fn picks_follow_their_chances() {
     let lights = lights(&packed);
     let (points, mut rejected) = (points(&packed, 4), 0);
     for &point in &points {
-        let found = ask(&packed, &vec![(point, packed.lights[0]); PICKS]);
+        let found = ask(&packed, &probe_source(), &vec![(point, packed.lights[0]); PICKS]);
         let p_value = |expected: Vec<f64>| {
             let cell = |(&place, chance): (&u32, f64)| {
                 let observed = found.iter().filter(|f| f.1 == place).count() as f64;

@@ -7,23 +7,23 @@
 mod support {
     pub mod gpu;
     pub mod light_scenes;
+    pub mod picks;
     pub mod scenes;
     pub mod tracers;
 }
 
-use candor::bound::sample_scale;
 use candor::cpu::rng::{SampleKey, random_bits, unit_float};
 use candor::cpu::sampling::{around, polar_hemisphere};
 use candor::effects::{Effect, Effects};
 use candor::gpu::GpuTracer;
-use candor::gpu::probe::{Probe, Row};
-use candor::kernel::{Packed, layout::LightNode, pack, probe_source};
+use candor::kernel::{Packed, layout::LightNode, probe_source};
 use candor::light_tree::SCANNED_LIGHTS;
 use candor::scene::{Estimator, Scene};
 use candor::viewpoint::Viewpoint;
 use glam::{DVec3, Vec3};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use support::light_scenes::lamp_layer;
+use support::picks::{Point, ask, packed};
 use support::scenes::{emitter, sphere};
 use support::tracers::film;
 
@@ -35,14 +35,6 @@ const FAMILY: f64 = 1e-6;
 /// Most lamps that are scanned.
 fn scanned() -> u32 {
     u32::try_from(SCANNED_LIGHTS).expect("a few hundred")
-}
-
-/// The scene with its tree, however few its lights are, and with its spheres where the probe
-/// finds them.
-fn packed(scene: &Scene) -> Packed {
-    let viewpoint = Viewpoint::of(scene);
-    let effects = Effects::of(scene, &viewpoint).with(Effect::LightTree);
-    pack(scene, &viewpoint, effects.without(Effect::Hierarchy), sample_scale(scene))
 }
 
 /// Sixty lamps in a light that holds the camera, beside one that is larger than the scene.
@@ -60,13 +52,6 @@ fn walking_probe() -> String {
     let text = probe_source();
     assert_eq!(text.matches(&constant).count(), 1);
     text.replace(&constant, "const SCANNED_LIGHTS: u32 = 0u;")
-}
-
-/// A point that asks for a light.
-#[derive(Debug, Clone, Copy)]
-struct Point {
-    position: Vec3,
-    normal: Vec3,
 }
 
 /// Distance from a node's centre in radii; none from a node without a sphere.
@@ -91,22 +76,6 @@ fn points(packed: &Packed, count: usize) -> Vec<Point> {
         packed.light_tree.iter().all(off)
     };
     (0..).map(point).filter(clear).take(count).collect()
-}
-
-/// What the device answers: the chance asked for, the light picked and its chance.
-fn ask(packed: &Packed, wgsl: &str, questions: &[(Point, u32)]) -> Vec<(f32, u32, f32)> {
-    let gpu = support::gpu::open();
-    let probe = Probe::with_source(&gpu, packed, wgsl.to_owned()).expect("the probe compiles");
-    let row = |v: Vec3, w: u32| [v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), w];
-    let rows: Vec<Row> = questions
-        .iter()
-        .flat_map(|(p, light)| [row(p.position, *light), row(p.normal, 0)])
-        .collect();
-    let found = probe.run("probe_pick", &rows, questions.len()).expect("the device runs");
-    found
-        .iter()
-        .map(|&[c, light, own, _]| (f32::from_bits(c), light, f32::from_bits(own)))
-        .collect()
 }
 
 /// What a node is worth, by angles and in `f64`; and how far off it may be: 32 roundings of

@@ -9,11 +9,7 @@ use libfuzzer_sys::fuzz_target;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-static SCRATCH: LazyLock<PathBuf> = LazyLock::new(|| scratch("toml"));
-
-fn scratch(ending: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("candor-fuzz-{}.{ending}", std::process::id()))
-}
+static SCRATCH: LazyLock<PathBuf> = LazyLock::new(|| hostile::scratch("toml"));
 
 fuzz_target!(|bytes: &[u8]| {
     hostile::check_scene(bytes, &SCRATCH);

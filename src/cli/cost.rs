@@ -2,12 +2,14 @@
 
 use super::args::{CostArgs, DeviceChoice, EstimatorChoice, SamplingArgs};
 use super::choose::Chosen;
-use super::phases::Phases;
+use super::steps::Steps;
 use super::{
     DONE, INTERRUPTED, Refusal, choose, cost_table, interrupt, memory, refuse, setup, streams,
     units,
 };
-use crate::cost::{CostError, Study, Tracers, Watch, bytes_per_pixel, resolvable, study};
+use crate::cost::{
+    CostError, Phase, Plan, Study, Tracers, Watch, bytes_per_pixel, resolvable, study,
+};
 use crate::cpu::CpuTracer;
 use crate::range::Arithmetic;
 use crate::report::cost::{CostReport, check_folder};
@@ -30,12 +32,12 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     memory::check(scene.size(), needed)?;
     let chosen = choose::choose(&common.device, common.threads)?;
     setup::check_range(&scene, &source, &[chosen.arithmetic(), Arithmetic::Double])?;
-    let mut phases = Phases::new(common.quiet);
+    let mut phases = Steps::new(common.quiet, Phase::name);
     if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
         phases.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
     }
     let description = chosen.describe(&scene)?;
-    phases.announce(&args.budget, &description.device);
+    phases.message(&planned(&args.budget, &description.device));
     phases.message(&format!("needs up to {} of memory", units::bytes(needed)));
     let measured = measure(args, &scene, &chosen, &mut phases);
     phases.finish();
@@ -57,11 +59,18 @@ pub(super) fn run(args: &CostArgs) -> Result<u8, Refusal> {
     Ok(if measured.interrupted { INTERRUPTED } else { DONE })
 }
 
+/// Says what is planned.
+fn planned(plan: &Plan, device: &str) -> String {
+    let phases = Phase::ALL
+        .map(|phase| format!("{} {}", phase.name(), units::time(plan.length(phase).as_secs_f64())));
+    format!("planned on {device}: {}", phases.join(", "))
+}
+
 fn measure(
     args: &CostArgs,
     scene: &Scene,
     chosen: &Chosen,
-    phases: &mut Phases,
+    phases: &mut Steps<Phase>,
 ) -> Result<Study, CostError> {
     let interrupt = interrupt::watch()
         .map_err(|error| TraceError::Device(format!("cannot listen for Ctrl-C: {error}")))?;

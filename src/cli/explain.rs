@@ -4,12 +4,14 @@ use super::args::{DeviceChoice, EstimatorChoice, ExplainArgs, SamplingArgs};
 use super::choose::{self, Chosen};
 use super::steps::Steps;
 use super::{DONE, FAILED, INTERRUPTED, Refusal, explain_table, interrupt, refuse, setup, streams};
-use crate::explain::{Agreement, ExplainError, Explanation, Measured, Version, Watch, measure};
+use crate::explain::{Agreement, ExplainError, Explanation, Measured, Step, Version, measure};
 use crate::gpu::Adapter;
 use crate::kernel::spirv;
 use crate::range::Arithmetic;
 use crate::scene::{Scene, Source};
 use crate::tracer::Description;
+use crate::viewpoint::Viewpoint;
+use crate::watch::Watch;
 use serde::Serialize;
 use std::io::IsTerminal;
 
@@ -27,8 +29,10 @@ pub(super) fn run(args: &ExplainArgs) -> Result<u8, Refusal> {
     } else {
         None
     };
-    let versions = [Version::specialised(&scene), Version::general(&scene)];
-    let explanation = Explanation::of(&scene, &versions[0], &versions[1]).or_else(mistake)?;
+    let viewpoint = Viewpoint::of(&scene);
+    let versions = [Version::specialised(&scene, &viewpoint), Version::general(&scene, &viewpoint)];
+    let explanation =
+        Explanation::of(&scene, &viewpoint, &versions[0], &versions[1]).or_else(mistake)?;
     let measurement = match &chosen {
         Some(Chosen::Adapter(adapter)) => {
             match measured(args, &scene, &source, [&versions[0], &versions[1]], adapter) {
@@ -84,7 +88,7 @@ fn mistake<T>(message: impl std::fmt::Display) -> Result<T, Refusal> {
 
 /// The kernel itself and nothing else.
 fn print_kernel(scene: &Scene, binary: bool) -> Result<u8, Refusal> {
-    let wgsl = Version::specialised(scene).kernel.wgsl();
+    let wgsl = Version::specialised(scene, &Viewpoint::of(scene)).kernel.wgsl();
     if !binary {
         streams::results(wgsl.trim_end())?;
     } else if std::io::stdout().is_terminal() {
@@ -118,7 +122,7 @@ fn measured(
     adapter: &Adapter,
 ) -> Result<Measured, Stopped> {
     setup::check_range(scene, source, &[Arithmetic::Single])?;
-    let mut steps = Steps::new(args.common.quiet);
+    let mut steps = Steps::new(args.common.quiet, Step::name);
     let interrupt = interrupt::watch()?;
     let mut watch = Watch { interrupt, observe: &mut |progress| steps.observe(progress) };
     let measured = measure(scene, versions, adapter, &mut watch);

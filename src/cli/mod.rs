@@ -15,7 +15,6 @@ mod interrupt;
 mod ledger;
 mod memory;
 mod output;
-mod phases;
 mod pilot;
 mod progress;
 mod render;

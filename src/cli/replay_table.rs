@@ -146,9 +146,7 @@ impl Rows<'_> {
         if self.any(i, |segment| segment.connection.is_some()) {
             self.row("  light", light, None);
         }
-        let emits = |vertex: Vertex| {
-            matches!(scene.spheres()[vertex.sphere].surface(), Surface::Emitter(_))
-        };
+        let emits = |vertex: Vertex| scene.spheres()[vertex.sphere].emits();
         let brings =
             |segment: &Segment| segment.connection.is_some() || segment.vertex.is_some_and(emits);
         let brought = |trail: &Trail| {

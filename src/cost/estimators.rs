@@ -232,12 +232,12 @@ pub(super) fn pilot(
     let mut contestants = Vec::new();
     for &estimator in estimators {
         contestants.push(Contestant::start(estimator, scene, device)?);
-        watch.report(slot)?;
+        slot.report(watch)?;
     }
     let slot = &slot.restarted();
     for contestant in &mut contestants {
         contestant.warm_up(turn)?;
-        watch.report(slot)?;
+        slot.report(watch)?;
     }
     slot.check(shortest(contestants.iter().map(|contestant| contestant.timed.pace())))?;
     take_turns(&mut contestants, slot, watch, Contestant::round)?;

@@ -78,12 +78,12 @@ pub(super) fn ladder(
         let mut timed = Timed::new(device(&scene)?, &scene);
         timed.trace_to(1)?;
         climbs.push(Climb { bounces, timed });
-        watch.report(slot)?;
+        slot.report(watch)?;
     }
     let slot = &slot.restarted();
     for climb in &mut climbs {
         climb.timed.warm_up(slot.turn(rungs.len()))?;
-        watch.report(slot)?;
+        slot.report(watch)?;
     }
     slot.check(shortest(climbs.iter().map(|climb| climb.timed.pace())))?;
     take_turns(&mut climbs, slot, watch, |climb, turn| climb.timed.round(turn))?;

@@ -31,10 +31,9 @@ pub use twin::TwinCost;
 use crate::film::BYTES_PER_PIXEL;
 use crate::scene::Scene;
 use crate::tracer::{TraceError, Tracer};
+use crate::watch::{self, Interrupted};
 use halves::SNAPSHOT_BYTES;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
-use stopwatch::Slot;
 
 /// Makes tracers of scenes.
 pub type MakeTracer<'a> = &'a dyn Fn(&Scene) -> Result<Box<dyn Tracer>, TraceError>;
@@ -76,36 +75,14 @@ pub enum CostError {
     Interrupted,
 }
 
-/// How far a study is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// What is being measured.
-    pub phase: Phase,
-    /// The part of the phase that is over, from 0 to 1.
-    pub share: f64,
-}
-
-/// Who looks on: is told of the progress, and may interrupt.
-pub struct Watch<'a> {
-    /// Raised to stop the study.
-    pub interrupt: &'a AtomicBool,
-    /// Told of the progress after every turn.
-    pub observe: &'a mut dyn FnMut(Progress),
-}
-
-impl Watch<'_> {
-    /// Tells of the progress.
-    ///
-    /// # Errors
-    /// If the study is to stop.
-    fn report(&mut self, slot: &Slot) -> Result<(), CostError> {
-        (self.observe)(Progress { phase: slot.phase, share: slot.passed() });
-        if self.interrupt.load(Ordering::Relaxed) {
-            return Err(CostError::Interrupted);
-        }
-        Ok(())
+impl From<Interrupted> for CostError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
     }
 }
+
+/// Who looks on.
+pub type Watch<'a> = watch::Watch<'a, Phase>;
 
 /// Bytes of this machine's memory that a study takes for each pixel: the pilot's four films
 /// and their snapshots, or the ladder's films, each with one more on its way. The films are

@@ -122,13 +122,13 @@ pub(super) fn race(
         let mut runner = Runner { cost, timed, first, current: 0, tries, next_look: 2 };
         runner.next_look = runner.next_look(f64::INFINITY).max(2);
         runners.push(runner);
-        watch.report(slot)?;
+        slot.report(watch)?;
     }
     let turn = slot.turn(runners.len().max(1));
     while slot.left() > 0.0 && !runners.iter().all(Runner::is_done) {
         for runner in runners.iter_mut().filter(|runner| !runner.is_done()) {
             runner.turn(turn)?;
-            watch.report(slot)?;
+            slot.report(watch)?;
         }
     }
     Ok(())

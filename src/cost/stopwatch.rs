@@ -5,6 +5,7 @@ use super::interval::{LogError, Measured, mean_and_deviation};
 use super::{CostError, Phase, Plan, Watch};
 use crate::scene::{MAX_SPP, Scene};
 use crate::tracer::Tracer;
+use crate::watch::Interrupted;
 use std::time::{Duration, Instant};
 
 /// Fewest rounds that are timed; their spread is the interval of the rate.
@@ -192,9 +193,9 @@ impl Slot {
         Err(CostError::Short { needed: Plan::budget_for(self.phase, length) })
     }
 
-    /// The part that has passed, from 0 to 1.
-    pub fn passed(&self) -> f64 {
-        (self.started.elapsed().as_secs_f64() / self.length.as_secs_f64()).min(1.0)
+    /// Tells of the part that has passed.
+    pub fn report(&self, watch: &mut Watch) -> Result<(), Interrupted> {
+        watch.report(self.phase, self.started.elapsed().as_secs_f64() / self.length.as_secs_f64())
     }
 
     /// Seconds that each of `items` may take in one turn.
@@ -218,7 +219,7 @@ pub(super) fn take_turns<T>(
         for place in 0..items.len() {
             let item = (place + round) % items.len();
             turn(&mut items[item], seconds)?;
-            watch.report(slot)?;
+            slot.report(watch)?;
         }
         round += 1;
     }

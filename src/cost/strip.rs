@@ -67,7 +67,7 @@ pub(super) fn strip(
         }
         while timed.done() < samples {
             timed.trace_to(samples.min(4 * timed.done().max(1)))?;
-            watch.report(&slot)?;
+            slot.report(watch)?;
         }
         if samples == 1 {
             // The first picture compiled the kernel, and its time says nothing about the next.

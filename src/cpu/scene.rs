@@ -6,7 +6,7 @@ use super::tree::Tree;
 use crate::effects::{Effect, Effects};
 use crate::light_tree::{LightTree, places};
 use crate::scene::{Estimator, Scene, Surface};
-use crate::viewpoint::{Form, Viewpoint};
+use crate::viewpoint::{Viewpoint, is_small};
 use glam::DVec3;
 
 /// From so many spheres on, a hierarchy finds hits sooner than a loop over all of them.
@@ -98,8 +98,8 @@ impl PreparedScene {
                 .then(|| LightTree::of(scene, &viewpoint)),
             seed: scene.settings().seed(),
             tree: (search == Search::Hierarchy).then(|| {
-                let is_huge = |i: usize| viewpoint.forms()[i] == Form::Anchored;
-                Tree::over(&spheres, viewpoint.focus(), |i| spheres[i].inside || is_huge(i))
+                let is_small = |i: usize| is_small(viewpoint.forms()[i], spheres[i].inside);
+                Tree::over(&spheres, viewpoint.focus(), is_small)
             }),
             spheres,
         }

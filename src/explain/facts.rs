@@ -74,18 +74,18 @@ pub struct Version {
 impl Version {
     /// The kernel that a scene calls for, and no more: the one that renders it.
     #[must_use]
-    pub fn specialised(scene: &Scene) -> Self {
-        Self::of(scene, Effects::of(scene, &Viewpoint::of(scene)))
+    pub fn specialised(scene: &Scene, viewpoint: &Viewpoint) -> Self {
+        Self::of(scene, viewpoint, Effects::of(scene, viewpoint))
     }
 
     /// The kernel with every effect under the same estimator.
     #[must_use]
-    pub fn general(scene: &Scene) -> Self {
-        Self::of(scene, Effects::general(scene))
+    pub fn general(scene: &Scene, viewpoint: &Viewpoint) -> Self {
+        Self::of(scene, viewpoint, Effects::general(scene))
     }
 
-    fn of(scene: &Scene, effects: Effects) -> Self {
-        let packed = kernel::pack(scene, &Viewpoint::of(scene), effects, sample_scale(scene));
+    fn of(scene: &Scene, viewpoint: &Viewpoint, effects: Effects) -> Self {
+        let packed = kernel::pack(scene, viewpoint, effects, sample_scale(scene));
         Self { kernel: Kernel::of(scene, effects, &packed), packed }
     }
 }
@@ -193,10 +193,14 @@ impl Explanation {
     ///
     /// # Errors
     /// naga's message if it refuses one of them, which is a mistake in candor.
-    pub fn of(scene: &Scene, specialised: &Version, general: &Version) -> Result<Self, String> {
-        let viewpoint = Viewpoint::of(scene);
+    pub fn of(
+        scene: &Scene,
+        viewpoint: &Viewpoint,
+        specialised: &Version,
+        general: &Version,
+    ) -> Result<Self, String> {
         Ok(Self {
-            effects: Effect::all().map(|effect| Account::of(effect, scene, &viewpoint)).collect(),
+            effects: Effect::all().map(|effect| Account::of(effect, scene, viewpoint)).collect(),
             specialised: Facts::of(specialised)?,
             general: Facts::of(general)?,
         })

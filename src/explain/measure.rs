@@ -8,8 +8,8 @@ use crate::gpu::{Adapter, Gpu, GpuTracer};
 use crate::kernel::Kernel;
 use crate::scene::{ImageSize, MAX_SPP, Scene};
 use crate::tracer::{TraceError, Tracer};
+use crate::watch::{Interrupted, Watch};
 use serde::Serialize;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Longest side of the picture that is traced.
@@ -48,27 +48,14 @@ pub enum Step {
     Tracing,
 }
 
-/// How far a measurement is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
-    /// What is being measured.
-    pub step: Step,
-    /// The part of it that is done, from 0 to 1.
-    pub share: f64,
-}
-
-/// Who looks on.
-pub struct Watch<'a> {
-    /// Raised to stop.
-    pub interrupt: &'a AtomicBool,
-    /// Told how far it is.
-    pub observe: &'a mut dyn FnMut(Progress),
-}
-
-impl Watch<'_> {
-    fn report(&mut self, step: Step, share: f64) -> Result<(), ExplainError> {
-        (self.observe)(Progress { step, share: share.min(1.0) });
-        if self.interrupt.load(Ordering::Relaxed) { Err(ExplainError::Interrupted) } else { Ok(()) }
+impl Step {
+    /// What is done, in a few words.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Compiling => "compiling both kernels",
+            Self::Tracing => "tracing with both kernels in turns",
+        }
     }
 }
 
@@ -81,6 +68,12 @@ pub enum ExplainError {
     /// The user stopped it.
     #[error("interrupted")]
     Interrupted,
+}
+
+impl From<Interrupted> for ExplainError {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 /// What was measured of the two kernels; pairs are (specialised, general).
@@ -119,7 +112,7 @@ pub fn measure(
     scene: &Scene,
     versions: [&Version; 2],
     adapter: &Adapter,
-    watch: &mut Watch,
+    watch: &mut Watch<'_, Step>,
 ) -> Result<Measured, ExplainError> {
     let bench = Bench { scene, versions, adapter };
     let size = reduced(scene.size());
@@ -197,7 +190,7 @@ impl Bench<'_> {
     fn compile(
         &self,
         size: ImageSize,
-        watch: &mut Watch,
+        watch: &mut Watch<'_, Step>,
     ) -> Result<([GpuTracer; 2], Vec<[f64; 2]>), ExplainError> {
         let started = Instant::now();
         watch.report(Step::Compiling, 0.0)?;
@@ -249,7 +242,7 @@ fn timed(work: impl FnOnce() -> Result<(), TraceError>) -> Result<f64, TraceErro
 fn trace(
     tracers: &mut [GpuTracer; 2],
     size: ImageSize,
-    watch: &mut Watch,
+    watch: &mut Watch<'_, Step>,
 ) -> Result<(Vec<[f64; 2]>, u64), ExplainError> {
     let mut done = COMPILED_SAMPLES;
     let mut round = 0;

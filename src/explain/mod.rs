@@ -8,5 +8,5 @@ mod measure;
 mod saving;
 
 pub use facts::{Account, Explanation, Facts, NAMED, Version};
-pub use measure::{ExplainError, Measured, Progress, Step, Watch, measure};
+pub use measure::{ExplainError, Measured, Step, measure};
 pub use saving::{Agreement, Saving};

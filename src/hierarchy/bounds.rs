@@ -1,5 +1,6 @@
 //! Boxes in `f32` that hold what they are said to hold.
 
+use super::wide::Wide;
 use glam::{DVec3, Vec3};
 
 /// An axis-parallel box, both corners included.
@@ -26,6 +27,12 @@ impl Bounds {
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// Half of the surface's area, in `f64`, where no scene's lengths overflow.
+    #[must_use]
+    pub fn half_area(self) -> f64 {
+        Wide::from(self).half_area()
     }
 
     /// Whether the two have a point in common.

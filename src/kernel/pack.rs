@@ -8,7 +8,7 @@ use crate::film::SampleScale;
 use crate::hierarchy::{Bounds, Hierarchy};
 use crate::light_tree::{LightTree, Node};
 use crate::scene::{Scene, Sphere, Surface};
-use crate::viewpoint::{Form, Viewpoint};
+use crate::viewpoint::{Form, Viewpoint, is_small};
 use glam::DVec3;
 
 /// From scene units to kernel units: `(p - focus)·2^-exponent`, so that the extent lies
@@ -78,9 +78,8 @@ pub fn pack(scene: &Scene, viewpoint: &Viewpoint, effects: Effects, scale: Sampl
     let (forms, inside) = (viewpoint.forms(), viewpoint.inside());
     let packed_sphere =
         |&index: &usize| pack_sphere(&spheres[index], index, forms[index], inside[index], &units);
-    let is_small = |&index: &usize| forms[index] == Form::Factored && !inside[index];
-    let (small, large): (Vec<usize>, Vec<usize>) =
-        (0..spheres.len()).partition(|index| effects.has(Effect::Hierarchy) && is_small(index));
+    let (small, large): (Vec<usize>, Vec<usize>) = (0..spheres.len())
+        .partition(|&i| effects.has(Effect::Hierarchy) && is_small(forms[i], inside[i]));
     let small: Vec<layout::Sphere> = small.iter().map(packed_sphere).collect();
     let boxes: Vec<Bounds> = small.iter().map(bounds).collect();
     let hierarchy = Hierarchy::build(&boxes);

@@ -94,7 +94,7 @@ fn children(binary: &Hierarchy, node: usize) -> Vec<usize> {
     while children.len() < WIDTH {
         let inner = (0..children.len()).filter(|&i| nodes[children[i]].count == 0);
         let largest = inner.max_by(|&a, &b| {
-            let area = |i: usize| half_area(nodes[children[i]].bounds);
+            let area = |i: usize| nodes[children[i]].bounds.half_area();
             area(a).total_cmp(&area(b))
         });
         let Some(largest) = largest else { break };
@@ -103,11 +103,6 @@ fn children(binary: &Hierarchy, node: usize) -> Vec<usize> {
         children.insert(largest + 1, second);
     }
     children
-}
-
-fn half_area(bounds: Bounds) -> f32 {
-    let side = bounds.high - bounds.low;
-    side.x * side.y + side.y * side.z + side.z * side.x
 }
 
 /// A node while its boxes are put on its grid, in `f64`, where differences of its `f32`

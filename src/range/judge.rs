@@ -4,7 +4,7 @@ use super::Arithmetic;
 use super::pairs::first_close_pair;
 use super::touch::{Coordinates, Touch, touch};
 use crate::hierarchy::TooManyPairs;
-use crate::scene::{Scene, Sphere, Surface};
+use crate::scene::{Scene, Sphere};
 use crate::viewpoint::{Viewpoint, corner_angle};
 use glam::DVec3;
 use std::sync::{Mutex, PoisonError};
@@ -81,7 +81,7 @@ impl<'a> Judge<'a> {
         let sides = scene.spheres().iter().zip(viewpoint.inside());
         let around = || sides.clone().filter_map(|(s, &inside)| inside.then_some(s));
         let enclosing = around()
-            .filter(|sphere| !matches!(sphere.surface(), Surface::Emitter(_)))
+            .filter(|sphere| !sphere.emits())
             .map(|sphere| sphere.center().distance(viewpoint.focus()) + sphere.radius())
             .reduce(f64::min);
         let start = viewpoint.ray_start(scene.camera());
@@ -91,11 +91,7 @@ impl<'a> Judge<'a> {
             viewpoint,
             arithmetic,
             inside: around().map(Sphere::ordinal).collect(),
-            lights: scene
-                .spheres()
-                .iter()
-                .filter(|sphere| matches!(sphere.surface(), Surface::Emitter(_)))
-                .collect(),
+            lights: scene.spheres().iter().filter(|sphere| sphere.emits()).collect(),
             rays_from: enclosing.unwrap_or(0.0).max(camera),
         }
     }
@@ -152,8 +148,7 @@ impl<'a> Judge<'a> {
     /// which are sampled one by one, it is all one which is seen.
     fn judge_pair(&self, small: &'a Sphere, large: &'a Sphere) -> Option<Fault<'a>> {
         let inside = [small, large].map(|sphere| self.is_inside(sphere));
-        let emits = matches!(small.surface(), Surface::Emitter(_));
-        let alike = small.surface() == large.surface() && inside[0] == inside[1] && !emits;
+        let alike = small.surface() == large.surface() && inside[0] == inside[1] && !small.emits();
         match touch(small, large, inside, self)? {
             Touch::Close(limit) => Some(Fault::Close { small, large, limit }),
             _ if alike => None,
@@ -166,8 +161,7 @@ impl<'a> Judge<'a> {
     /// one, where that may be overlooked: neither emits, and it is a speck as seen by the camera
     /// and by every light. Where a million spheres lie at random, some nearly hide others.
     fn speck(&self, small: &Sphere, large: &Sphere, fault: &Fault<'_>) -> Option<f64> {
-        let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
-        if !matches!(fault, Fault::Hidden { .. }) || emits(small) || emits(large) {
+        if !matches!(fault, Fault::Hidden { .. }) || small.emits() || large.emits() {
             return None;
         }
         let (camera, radius) = (self.scene.camera(), small.radius());

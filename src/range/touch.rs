@@ -1,7 +1,7 @@
 //! How two spheres touch, overlap or nearly do, and whether that can be resolved.
 
 use super::judge::{CLOSE, ERROR, FINEST, MOVED, SMALLEST};
-use crate::scene::{Sphere, Surface};
+use crate::scene::Sphere;
 use glam::DVec3;
 
 /// Share of the picture in which it may be rounding that says which of two surfaces is seen.
@@ -55,10 +55,9 @@ pub(super) fn touch(
         return (!apart).then_some(Touch::Close(limit));
     }
     let least = coordinates.step(SMALLEST, small, large, outermost);
-    let emits = |sphere: &Sphere| matches!(sphere.surface(), Surface::Emitter(_));
     let hidden_lamp = match inside {
-        [false, false] => emits(small),
-        [true, true] => emits(large),
+        [false, false] => small.emits(),
+        [true, true] => large.emits(),
         [true, false] | [false, true] => false,
     };
     if out.abs() < least
@@ -71,8 +70,8 @@ pub(super) fn touch(
         [_, true] => (into, coordinates.step(FINEST, small, large, innermost)),
         _ => (out, coordinates.step(FINEST, small, large, outermost)),
     };
-    let from = if inside[1] && emits(small) { -least } else { least.min(limit) };
-    let from = if inside[1] && !emits(small) { 0.0 } else { from };
+    let from = if inside[1] && small.emits() { -least } else { least.min(limit) };
+    let from = if inside[1] && !small.emits() { 0.0 } else { from };
     let is_hidden = from <= shown && shown < limit.min(small.radius());
     is_hidden.then_some(Touch::Hidden(limit))
 }

@@ -151,6 +151,6 @@ impl Scene {
     /// Whether any sphere emits; without one the picture is exactly zero.
     #[must_use]
     pub fn has_lights(&self) -> bool {
-        self.spheres.iter().any(|s| matches!(s.surface(), Surface::Emitter(_)))
+        self.spheres.iter().any(Sphere::emits)
     }
 }

@@ -187,6 +187,12 @@ impl Sphere {
     pub fn surface(&self) -> Surface {
         self.surface
     }
+
+    /// Whether it is a light.
+    #[must_use]
+    pub fn emits(&self) -> bool {
+        matches!(self.surface, Surface::Emitter(_))
+    }
 }
 
 /// What messages call a sphere, by its number and its name.

@@ -17,6 +17,13 @@ pub enum Form {
     Anchored,
 }
 
+/// Whether a hierarchy may hold a sphere of a form: huge ones would be in every box, and those
+/// seen from inside may be hit on their far side.
+#[must_use]
+pub fn is_small(form: Form, inside: bool) -> bool {
+    form == Form::Factored && !inside
+}
+
 impl Form {
     /// The form of a sphere in a scene of this extent whose camera rays start at `start`.
     pub(super) fn of(sphere: &Sphere, extent: f64, start: DVec3) -> Self {

@@ -10,7 +10,7 @@ mod approach;
 mod form;
 
 pub use approach::corner_angle;
-pub use form::Form;
+pub use form::{Form, is_small};
 
 use crate::scene::{Camera, Scene, Sphere};
 use glam::DVec3;

@@ -10,7 +10,7 @@ use candor::report::PictureHeader;
 use candor::scene::{Estimator, ImageSize, Scene, SceneFileError, load, parse};
 use candor::viewpoint::Viewpoint;
 use candor::{bound, estimate};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Composing kernels takes ten times as long as reading a small scene, validating one a
 /// thousand times, and so may tracing it. One scene in so many goes there, chosen by its hash.
@@ -19,6 +19,11 @@ const TRACED_ONE_IN: u8 = 128;
 
 /// Longest message: 20 mistakes, each with a line that is cut and notes that are cut.
 const LONGEST_MESSAGE: usize = 64 * 1024;
+
+/// A file that a fuzzer may overwrite.
+pub fn scratch(ending: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("candor-fuzz-{}.{ending}", std::process::id()))
+}
 
 /// The characters of a message must be ones that do nothing to a terminal.
 fn is_harmless(message: &str) -> bool {
