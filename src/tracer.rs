@@ -136,6 +136,13 @@ pub trait Tracer {
     /// If the device fails, or the film already holds a sample of the range.
     fn add_samples(&mut self, range: Range<u64>) -> Result<(), TraceError>;
 
+    /// Goes on from a film of the same picture and its invalid samples, which take the place of
+    /// what this tracer has so far.
+    ///
+    /// # Errors
+    /// If the device fails, or size or scale differ.
+    fn restore(&mut self, film: &Film, ledger: &Ledger) -> Result<(), TraceError>;
+
     /// The film with everything added so far.
     ///
     /// # Errors

@@ -70,6 +70,11 @@ impl Tracer for Dark {
         Ok(self.0.claim(range)?)
     }
 
+    fn restore(&mut self, film: &Film, _: &Ledger) -> Result<(), TraceError> {
+        self.0 = film.clone();
+        Ok(())
+    }
+
     fn film(&mut self) -> Result<Film, TraceError> {
         Ok(self.0.clone())
     }

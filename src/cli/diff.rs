@@ -23,9 +23,9 @@ pub(super) fn run(args: &DiffArgs) -> Result<u8, Refusal> {
         return refuse(format_args!(
             "{} has {} pixels, {} has {}; only pictures of one size can be compared",
             args.a.display(),
-            text(a.size),
+            a.size,
             args.b.display(),
-            text(b.size)
+            b.size
         ));
     }
     memory::check_comparison(a.size)?;
@@ -297,10 +297,6 @@ fn legend(output: &Path, unit: MapUnit, block: usize) -> String {
         "wrote     {path}: red where a is brighter, blue where darker, grey where \
          unproven; full colour at {full}{place}"
     )
-}
-
-fn text(size: ImageSize) -> String {
-    format!("{}x{}", size.width(), size.height())
 }
 
 /// A p-value as people read it; far out in the tail its size means nothing.

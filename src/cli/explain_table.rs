@@ -39,10 +39,9 @@ fn title(explained: &Explained) -> String {
     let (size, settings) = (explained.scene.size(), explained.scene.settings());
     wrapped(
         &format!(
-            "{}: {}x{}, {}, bounces: {}, spheres: {}",
+            "{}: {}, {}, bounces: {}, spheres: {}",
             explained.file,
-            size.width(),
-            size.height(),
+            size,
             settings.estimator().name(),
             settings.bounces(),
             explained.scene.spheres().len()

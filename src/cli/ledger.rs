@@ -60,8 +60,7 @@ fn command(args: &RenderArgs, scene: &Scene, sample: &InvalidSample) -> String {
     }
     words.extend(common.bounces.map(|bounces| format!("--bounces {bounces}")));
     words.extend(common.seed.map(|seed| format!("--seed {seed}")));
-    let size = common.size.map(|size| format!("--size {}x{}", size.width(), size.height()));
-    words.extend(size);
+    words.extend(common.size.map(|size| format!("--size {size}")));
     words.extend(match &common.device {
         DeviceChoice::Auto => None,
         DeviceChoice::Gpu => Some("--device gpu".to_owned()),

@@ -44,10 +44,9 @@ pub(super) fn check_comparison(size: ImageSize) -> Result<(), Refusal> {
 /// What is lacking for a picture that takes `needed` bytes, if anything.
 fn lack(size: ImageSize, needed: u64) -> Option<String> {
     let available = available();
-    let (width, height) = (size.width(), size.height());
     (needed > available).then(|| {
         format!(
-            "{width}x{height} pixels need {} of memory, {} are available",
+            "{size} pixels need {} of memory, {} are available",
             units::bytes(needed),
             units::bytes(available)
         )

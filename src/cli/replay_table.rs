@@ -36,12 +36,11 @@ fn heading(replayed: &Replayed) -> Vec<String> {
     let size = replayed.scene.size();
     let sample = format!("{} of pixel {column},{row}, {}", replayed.sample, replayed.file);
     let how = format!(
-        "{}, bounces {}, seed {}, {}x{} pixels",
+        "{}, bounces {}, seed {}, {} pixels",
         settings.estimator().name(),
         settings.bounces(),
         settings.seed(),
-        size.width(),
-        size.height()
+        size
     );
     vec![
         fact("sample", sample),

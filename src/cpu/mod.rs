@@ -79,6 +79,13 @@ impl Tracer for CpuTracer {
         Ok(())
     }
 
+    fn restore(&mut self, film: &Film, ledger: &Ledger) -> Result<(), TraceError> {
+        film.check_fits(self.film.size(), self.film.scale())?;
+        self.film = film.clone();
+        self.ledger = ledger.clone();
+        Ok(())
+    }
+
     fn film(&mut self) -> Result<Film, TraceError> {
         Ok(self.film.clone())
     }

@@ -59,6 +59,12 @@ impl SampleScale {
     }
 }
 
+impl std::fmt::Display for SampleScale {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "2^{}", self.shift)
+    }
+}
+
 /// trunc(x·2^shift) for 0 ≤ x with x·2^shift < 2⁶⁴; subnormal x counts as 0, as a
 /// device may flush it.
 #[must_use]

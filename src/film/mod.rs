@@ -15,6 +15,7 @@ pub use ranges::{MAX_SAMPLE_INDEX, RangeError, SampleRanges};
 
 use crate::scene::ImageSize;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// 32-bit words per pixel: 3 × 3 for the channels, 4 for the squared luminance.
 pub const WORDS: usize = 13;
@@ -42,20 +43,21 @@ pub enum FilmError {
     },
 }
 
-/// Exact sums of the samples of one picture.
+/// Exact sums of the samples of one picture. A clone shares the sums until one of the two is
+/// added to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Film {
     size: ImageSize,
     scale: SampleScale,
     samples: SampleRanges,
-    pixels: Vec<PixelWords>,
+    pixels: Arc<Vec<PixelWords>>,
 }
 
 impl Film {
     /// A film without samples.
     #[must_use]
     pub fn new(size: ImageSize, scale: SampleScale) -> Self {
-        let pixels = vec![[0; WORDS]; size.pixels() as usize];
+        let pixels = Arc::new(vec![[0; WORDS]; size.pixels() as usize]);
         Self { size, scale, samples: SampleRanges::default(), pixels }
     }
 
@@ -99,7 +101,7 @@ impl Film {
 
     /// The words of every pixel, to be written by whoever claimed the samples.
     pub fn pixels_mut(&mut self) -> &mut [PixelWords] {
-        &mut self.pixels
+        Arc::make_mut(&mut self.pixels).as_mut_slice()
     }
 
     /// Adds another film of the same picture.
@@ -108,19 +110,26 @@ impl Film {
     /// If size or scale differ, samples overlap, or the sums have no room left; the
     /// film is then unchanged.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
+        other.check_fits(self.size, self.scale)?;
+        self.samples = self.samples.union(&other.samples)?;
+        for (ours, theirs) in self.pixels_mut().iter_mut().zip(other.pixels()) {
+            add_words(ours, theirs);
+        }
+        Ok(())
+    }
+
+    /// Checks that this film is of a picture of that size, at that scale.
+    ///
+    /// # Errors
+    /// If size or scale differ.
+    pub fn check_fits(&self, size: ImageSize, scale: SampleScale) -> Result<(), FilmError> {
         let differs =
             |field, ours: String, theirs: String| Err(FilmError::Differs { field, ours, theirs });
-        if self.size != other.size {
-            let text = |s: ImageSize| format!("{}x{}", s.width(), s.height());
-            return differs("size", text(self.size), text(other.size));
+        if self.size != size {
+            return differs("size", size.to_string(), self.size.to_string());
         }
-        if self.scale != other.scale {
-            let text = |s: SampleScale| format!("2^{}", s.shift());
-            return differs("scale", text(self.scale), text(other.scale));
-        }
-        self.samples = self.samples.union(&other.samples)?;
-        for (ours, theirs) in self.pixels.iter_mut().zip(&other.pixels) {
-            add_words(ours, theirs);
+        if self.scale != scale {
+            return differs("scale", scale.to_string(), self.scale.to_string());
         }
         Ok(())
     }
@@ -161,7 +170,8 @@ impl PixelSums {
     }
 }
 
-fn add_words(ours: &mut PixelWords, theirs: &PixelWords) {
+/// Adds the sums of the same pixel in another film.
+pub fn add_words(ours: &mut PixelWords, theirs: &PixelWords) {
     let (a, b) = (sums(ours), sums(theirs));
     *ours = split(std::array::from_fn(|i| a[i] + b[i]));
 }

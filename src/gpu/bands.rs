@@ -42,7 +42,9 @@ pub(super) fn allocate(gpu: &Gpu, size: ImageSize) -> Result<Vec<Band>, TraceErr
         let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
             label: Some("film"),
             size: u64::from(rows.end - rows.start) * row_bytes,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_SRC
+                | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         gpu.check()?;
@@ -51,7 +53,7 @@ pub(super) fn allocate(gpu: &Gpu, size: ImageSize) -> Result<Vec<Band>, TraceErr
     Ok(bands)
 }
 
-/// Bytes of the buffer that reads back a band of `largest` bytes: whole pixels.
+/// Bytes of one piece of a band of `largest` bytes on its way: whole pixels.
 pub(super) fn staging_bytes(largest: u64) -> u64 {
     largest.min(STAGING_BYTES / BYTES_PER_PIXEL * BYTES_PER_PIXEL)
 }
@@ -72,6 +74,26 @@ pub(super) fn read(
             let bytes = piece.min(band.buffer.size() - offset);
             let (target, others) = rest.split_at_mut(index(bytes));
             read_piece(gpu, &band.buffer, offset, &staging, target)?;
+            rest = others;
+            offset += bytes;
+        }
+    }
+    Ok(())
+}
+
+/// Writes `pixels` over the bands, in order.
+pub(super) fn write(gpu: &Gpu, bands: &[&Band], pixels: &[PixelWords]) -> Result<(), TraceError> {
+    let mut rest: &[u8] = bytemuck::cast_slice(pixels);
+    for band in bands {
+        let mut offset = 0;
+        while offset < band.buffer.size() {
+            let bytes = staging_bytes(band.buffer.size() - offset);
+            let (piece, others) = rest.split_at(index(bytes));
+            gpu.queue().write_buffer(&band.buffer, offset, piece);
+            // Each piece waits in a buffer of its own until something is submitted.
+            let encoder =
+                gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+            gpu.run(encoder)?;
             rest = others;
             offset += bytes;
         }

@@ -149,6 +149,10 @@ impl GpuTracer {
         films + bands::staging_bytes(films) + self.scene_bytes + dispatches
     }
 
+    fn bands(&self) -> Vec<&Band> {
+        self.bands.iter().map(|(band, _)| band).collect()
+    }
+
     /// Traces `count` samples from `first` on, of the given rows of a band.
     fn dispatch(
         &mut self,
@@ -241,10 +245,18 @@ impl Tracer for GpuTracer {
         Ok(())
     }
 
+    fn restore(&mut self, film: &Film, ledger: &Ledger) -> Result<(), TraceError> {
+        film.check_fits(self.size, self.scale)?;
+        self.take_ledger()?;
+        bands::write(&self.gpu, &self.bands(), film.pixels())?;
+        self.samples = film.samples().clone();
+        self.invalid = ledger.clone();
+        Ok(())
+    }
+
     fn film(&mut self) -> Result<Film, TraceError> {
         let mut film = Film::awaiting(self.size, self.scale, self.samples.clone());
-        let bands: Vec<&Band> = self.bands.iter().map(|(band, _)| band).collect();
-        bands::read(&self.gpu, &bands, film.pixels_mut())?;
+        bands::read(&self.gpu, &self.bands(), film.pixels_mut())?;
         Ok(film)
     }
 

@@ -116,3 +116,10 @@ impl ImageSize {
         self.width * self.height
     }
 }
+
+/// `640x480`.
+impl std::fmt::Display for ImageSize {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}x{}", self.width, self.height)
+    }
+}
