@@ -1,4 +1,4 @@
-//! The progressive loop: drives a tracer through a range of samples until it is done, at a
+//! The progressive loop: drives a tracer through ranges of samples until it is done, at a
 //! stated error, out of time or interrupted.
 
 use crate::estimate::{FIRST_LOOK, Summary, is_look, next_look, summarize};
@@ -17,13 +17,35 @@ const LOOK_SHARE: f64 = 0.01;
 /// What to render.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// Samples of every pixel.
-    pub samples: Range<u64>,
-    /// Stop after this long, with whatever samples there are; at least one.
+    /// What the tracer's film holds already.
+    pub begun: Begun,
+    /// Samples of every pixel that are to be added, in this order.
+    pub ranges: Vec<Range<u64>>,
+    /// Stop after this long, [`Begun::elapsed`] included, with whatever samples there are; at
+    /// least one.
     pub time: Option<Duration>,
     /// Stop when the upper confidence bound on the relative RMS error
     /// ([`Summary::error_bound`]) is at or below this fraction.
     pub target_error: Option<f64>,
+}
+
+/// What was rendered earlier.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Begun {
+    /// Samples of every pixel.
+    pub samples: u64,
+    /// Time spent on them.
+    pub elapsed: Duration,
+    /// Samples at which the error was to be looked at next, for the same target.
+    pub next_look: Option<u64>,
+}
+
+impl Plan {
+    /// Samples of every pixel at the end, unless something else ends the render.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.begun.samples + self.ranges.iter().map(|range| range.end - range.start).sum::<u64>()
+    }
 }
 
 /// Who wants to know the picture's error while it is rendered.
@@ -55,8 +77,10 @@ pub enum Stop {
 pub struct Progress {
     /// Samples per pixel so far.
     pub done: u64,
-    /// Time since the start.
+    /// Time spent so far, [`Begun::elapsed`] included.
     pub elapsed: Duration,
+    /// Samples at which the error is looked at next, if there is a target.
+    pub next_look: Option<u64>,
     /// The latest look at the picture's error, if there was one; it was just now if
     /// `summary.samples` is `done`. It has a bound only at the counts that the bound's
     /// confidence is spread over ([`is_look`]).
@@ -68,55 +92,68 @@ pub struct Progress {
 pub struct Outcome {
     /// Why it stopped.
     pub stop: Stop,
-    /// Time spent.
+    /// Time spent, [`Begun::elapsed`] included.
     pub elapsed: Duration,
+    /// Samples at which the error would have been looked at next, if there is a target.
+    pub next_look: Option<u64>,
 }
 
-/// Renders according to plan. `observe` is told of the progress after every round.
+/// Told of the progress after every round; it may look at the tracer's film.
+pub type Observer<'a> =
+    dyn FnMut(&Progress, &mut dyn Tracer) -> Result<(), TraceError> + 'a;
+
+/// Renders according to plan.
 ///
 /// With a target, the samples that the render ends with depend on the picture alone, not on
 /// the time that it took, unless a limit ends it.
 ///
 /// # Errors
-/// If the tracer fails.
+/// If the tracer or the observer fails.
 pub fn render(
     tracer: &mut dyn Tracer,
     plan: &Plan,
     interrupt: &AtomicBool,
     audience: Audience,
-    observe: &mut dyn FnMut(Progress),
+    observe: &mut Observer,
 ) -> Result<Outcome, TraceError> {
     let started = Instant::now();
-    let mut watch = Watch::new(plan.target_error, audience);
-    let total = plan.samples.end - plan.samples.start;
-    let (mut done, mut count) = (0, 1);
+    let elapsed = || plan.begun.elapsed + started.elapsed();
+    let mut watch = Watch::new(plan, audience);
+    let mut ranges = plan.ranges.iter().cloned();
+    let mut range = 0..0;
+    let (mut done, mut count) = (plan.begun.samples, 1);
+    if plan.target_error.is_some() && done > 0 {
+        watch.observe(tracer, done, elapsed())?;
+    }
     let stop = loop {
         if watch.target_reached {
             break Stop::Target;
         }
-        if done >= total {
-            break Stop::Done;
+        if range.is_empty() {
+            let Some(next) = ranges.find(|range| !range.is_empty()) else { break Stop::Done };
+            range = next;
         }
         // At least one sample of every pixel is traced, so that there is a picture.
         if done > 0 {
             if interrupt.load(Ordering::Relaxed) {
                 break Stop::Interrupted;
             }
-            if plan.time.is_some_and(|limit| started.elapsed() >= limit) {
+            if plan.time.is_some_and(|limit| elapsed() >= limit) {
                 break Stop::Time;
             }
         }
         let round = Instant::now();
-        let size = count.min(total - done).min(watch.next_count(done) - done);
-        let first = plan.samples.start + done;
-        tracer.add_samples(first..first + size)?;
+        let size = count.min(range.end - range.start).min(watch.next_count(done) - done);
+        tracer.add_samples(range.start..range.start + size)?;
+        range.start += size;
         done += size;
-        let left = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
+        let left = plan.time.map(|limit| limit.saturating_sub(elapsed()));
         count = next_count(count, size, round.elapsed(), left.unwrap_or(ROUND).min(ROUND));
-        watch.observe(tracer, done, started)?;
-        observe(Progress { done, elapsed: started.elapsed(), summary: watch.summary });
+        watch.observe(tracer, done, elapsed())?;
+        let (next_look, summary) = (watch.next_look(), watch.summary);
+        observe(&Progress { done, elapsed: elapsed(), next_look, summary }, tracer)?;
     };
-    Ok(Outcome { stop, elapsed: started.elapsed() })
+    Ok(Outcome { stop, elapsed: elapsed(), next_look: watch.next_look() })
 }
 
 /// When the error is looked at, and what was seen.
@@ -132,15 +169,26 @@ struct Watch {
 }
 
 impl Watch {
-    fn new(target: Option<f64>, audience: Audience) -> Self {
+    fn new(plan: &Plan, audience: Audience) -> Self {
+        let begun = plan.begun;
+        // The first possible look from here on, which may be at once.
+        let planned = begun.next_look.filter(|&look| look >= begun.samples);
+        let first = planned.unwrap_or(match begun.samples {
+            0 => FIRST_LOOK,
+            samples => next_look(samples - 1, Some(samples)),
+        });
         Self {
             audience,
-            target,
-            target_look: target.map_or(u64::MAX, |_| FIRST_LOOK),
+            target: plan.target_error,
+            target_look: plan.target_error.map_or(u64::MAX, |_| first),
             target_reached: false,
-            next_time: Duration::from_secs(1),
+            next_time: begun.elapsed + Duration::from_secs(1),
             summary: None,
         }
+    }
+
+    fn next_look(&self) -> Option<u64> {
+        self.target.map(|_| self.target_look)
     }
 
     /// The count after `done` at which a round must end for a look.
@@ -156,11 +204,11 @@ impl Watch {
         &mut self,
         tracer: &mut dyn Tracer,
         done: u64,
-        started: Instant,
+        elapsed: Duration,
     ) -> Result<(), TraceError> {
         let by_count =
             done == self.target_look || (self.audience == Audience::Log && done.is_power_of_two());
-        let by_time = self.audience != Audience::Nobody && started.elapsed() >= self.next_time;
+        let by_time = self.audience != Audience::Nobody && elapsed >= self.next_time;
         if !by_count && !by_time {
             return Ok(());
         }
@@ -175,7 +223,7 @@ impl Watch {
         }
         self.summary = Some(summary);
         let pause = looked.elapsed().div_f64(LOOK_SHARE).max(Duration::from_secs(1));
-        self.next_time = started.elapsed() + pause;
+        self.next_time = elapsed + looked.elapsed() + pause;
         Ok(())
     }
 }

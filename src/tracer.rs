@@ -15,6 +15,25 @@ pub struct Description {
     pub software: bool,
 }
 
+impl Description {
+    /// Both names, where they differ: who made a film of which another made a part.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        let join = |ours: &str, theirs: &str| {
+            let known = ours.split(BETWEEN).any(|name| name == theirs);
+            if known { ours.to_owned() } else { format!("{ours}{BETWEEN}{theirs}") }
+        };
+        Self {
+            device: join(&self.device, &other.device),
+            driver: join(&self.driver, &other.driver),
+            software: self.software && other.software,
+        }
+    }
+}
+
+/// Stands between the names of several devices.
+const BETWEEN: &str = "; ";
+
 /// Why a sample did not enter the film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum InvalidReason {
@@ -49,6 +68,19 @@ impl InvalidReason {
         } else {
             bits.into_iter().any(|bits| bits > bound.to_bits()).then_some(Self::AboveBound)
         }
+    }
+
+    /// The reason of that [`name`](Self::name).
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let all = [
+            Self::Unfinished,
+            Self::NotANumber,
+            Self::Infinite,
+            Self::Negative,
+            Self::AboveBound,
+        ];
+        all.into_iter().find(|reason| reason.name() == name)
     }
 
     /// One word, for files and `--json`.

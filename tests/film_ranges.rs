@@ -107,7 +107,7 @@ fn films_of_other_pictures_are_refused() {
         error
     };
     let differs = |error: &FilmError, what: &str| {
-        assert!(matches!(error, FilmError::Differs { field, .. } if *field == what), "{error}");
+        assert!(matches!(error, FilmError::Differs(found) if found.field == what), "{error}");
     };
     differs(&refused(film(size(2, 3), 10.0, 4..8)), "size");
     differs(&refused(film(size(3, 2), 100.0, 4..8)), "scale");

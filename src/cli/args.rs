@@ -139,7 +139,19 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "STOPS", default_value_t = 0.0,
           value_parser = parse_exposure)]
     pub exposure: f64,
-    /// Replace a film even if it holds more samples.
+    /// Go on from the EXR named by -o (or SCENE.exr): trace those of the samples that it does not
+    /// hold, gaps first. --spp and --time count what is there. Where nothing is there, start.
+    #[arg(long, conflicts_with = "no_state")]
+    pub resume: bool,
+    /// Write the film so far into that EXR this often, such as 60s or 5m.
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_time,
+          conflicts_with = "no_state")]
+    pub checkpoint_every: Duration,
+    /// Leave the exact sums out of the EXR, and write no checkpoints: smaller files, which nothing
+    /// can be added to.
+    #[arg(long)]
+    pub no_state: bool,
+    /// Replace a film even if it holds other samples.
     #[arg(long)]
     pub force: bool,
 }

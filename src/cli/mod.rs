@@ -2,6 +2,7 @@
 //! into messages. Results go to stdout; progress and messages to stderr.
 
 mod args;
+mod checkpoint;
 mod choose;
 mod cost;
 mod cost_table;
@@ -13,6 +14,7 @@ mod explain_table;
 mod hard;
 mod interrupt;
 mod ledger;
+mod log;
 mod memory;
 mod output;
 mod pilot;
@@ -22,6 +24,7 @@ mod render_report;
 mod replay;
 mod replay_json;
 mod replay_table;
+mod resume;
 mod setup;
 mod steps;
 mod streams;

@@ -1,8 +1,8 @@
-//! Where a render's files go, and what is already there.
+//! Where the files of a render or a merge go, and what is already there.
 
-use super::args::RenderArgs;
 use super::{Refusal, refuse, streams};
-use crate::report::{self, Picture, Provenance};
+use crate::film::{Film, Identity, SampleRanges};
+use crate::report::{self, FileError, Picture, Provenance, Sums, There, look_at};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
@@ -13,45 +13,73 @@ enum Format {
     Png,
 }
 
-/// The files of one render.
+/// The files of one picture.
 #[derive(Debug)]
 pub(super) struct Outputs {
     files: Vec<(PathBuf, Format)>,
-    force: bool,
-    quiet: bool,
+    wishes: Wishes,
+    /// Where checkpoints go, if not to the film that keeps the state.
+    aside: Option<PathBuf>,
+}
+
+/// What the user wants of them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wishes {
+    /// Replace films that hold other samples.
+    pub force: bool,
+    /// Leave the exact sums out.
+    pub no_state: bool,
+    /// Say nothing.
+    pub quiet: bool,
+    /// Stops by which the PNG is brightened.
+    pub exposure: f64,
 }
 
 impl Outputs {
-    /// The files that the user asked for, checked before work starts.
-    pub fn new(args: &RenderArgs) -> Result<Self, Refusal> {
-        let mut paths = args.output.clone();
-        if paths.is_empty() {
-            let stem = args.scene.file_stem().unwrap_or_default();
-            paths = ["exr", "png"].map(|ending| named(stem, ending)).to_vec();
-        }
+    /// The files that the user asked for, checked before work starts. What is named after `stem`
+    /// are those that are left to candor: both, and the film that keeps the state of a render to
+    /// a PNG alone.
+    pub fn new(asked: &[PathBuf], stem: &OsStr, wishes: Wishes) -> Result<Self, Refusal> {
         let mut files = Vec::new();
-        for path in paths {
-            let Some(format) = format_of(&path) else {
+        for path in asked {
+            let Some(format) = format_of(path) else {
                 return refuse(format_args!(
                     "{}: the ending says the format; it must be .exr or .png",
                     path.display()
                 ));
             };
-            if files.iter().any(|(other, _)| *other == path) {
+            if files.iter().any(|(other, _)| other == path) {
                 return refuse(format_args!("{}: named twice", path.display()));
             }
-            report::check_writable(&path)?;
-            let is_foreign = format == Format::Exr && report::film_samples(&path)?.is_none();
-            if is_foreign && !args.force {
+            files.push((path.clone(), format));
+        }
+        if files.is_empty() {
+            files.push((named(stem, "png"), Format::Png));
+        }
+        let has_film = files.iter().any(|&(_, format)| format == Format::Exr);
+        if !has_film && !(wishes.no_state && !asked.is_empty()) {
+            files.push((named(stem, "exr"), Format::Exr));
+        }
+        // Films first: what is lost with a picture can be made from its film.
+        files.sort_by_key(|&(_, format)| format != Format::Exr);
+        let outputs = Self { files, wishes, aside: None };
+        outputs.check()?;
+        Ok(outputs)
+    }
+
+    fn check(&self) -> Result<(), Refusal> {
+        for (path, format) in &self.files {
+            report::check_writable(path)?;
+            let is_foreign = *format == Format::Exr && look_at(path)? == There::Foreign;
+            if is_foreign && !self.wishes.force {
                 return refuse(format_args!(
                     "{}: was not written by candor and stays as it is; --force replaces it, \
                      -o names another file",
                     path.display()
                 ));
             }
-            files.push((path, format));
         }
-        Ok(Self { files, force: args.force, quiet: args.common.quiet })
+        Ok(())
     }
 
     /// Whether a file is one of them.
@@ -59,58 +87,119 @@ impl Outputs {
         self.files.iter().any(|(path, _)| path == file)
     }
 
-    /// Refuses to replace a film that holds more than `samples` samples per pixel.
-    pub fn check_films(&self, samples: u64) -> Result<(), Refusal> {
-        match self.better_film(samples)? {
+    /// The film that keeps the state, if one does.
+    pub fn state(&self) -> Option<&Path> {
+        let mut films = self.films();
+        films.next().filter(|_| !self.wishes.no_state)
+    }
+
+    fn films(&self) -> impl Iterator<Item = &Path> {
+        let films = self.files.iter().filter(|&&(_, format)| format == Format::Exr);
+        films.map(|(path, _)| path.as_path())
+    }
+
+    /// Refuses to replace a film of which these samples are not all.
+    pub fn check_films(
+        &self,
+        identity: Option<&Identity>,
+        samples: &SampleRanges,
+    ) -> Result<(), Refusal> {
+        match self.in_the_way(identity, samples)? {
             None => Ok(()),
-            Some((path, there)) => refuse(format_args!(
-                "{} holds {there} samples per pixel, more than the {samples} of this render; \
-                 --force replaces it",
-                path.display()
-            )),
+            Some((path, why)) => {
+                refuse(format_args!("{} holds {why}; --force replaces it", path.display()))
+            }
         }
     }
 
-    /// Writes all files and returns where they are. Where a film with more samples than
-    /// this render came to is in the way (it was interrupted, or its time was up), that
-    /// one is left alone and all files go beside, under the next free number.
+    /// Where checkpoints go: to the film that keeps the state, unless another one is there that
+    /// is not gone on from, and is replaced by a finished render only.
+    pub fn checkpoint(&mut self, resumed: bool) -> Result<Option<PathBuf>, Refusal> {
+        let Some(path) = self.state() else { return Ok(None) };
+        if resumed || look_at(path)? == There::Nothing {
+            return Ok(Some(path.to_owned()));
+        }
+        self.aside = Some(beside(path)?);
+        Ok(self.aside.clone())
+    }
+
+    /// Writes all files and returns where they are. Where a film that holds more or other samples
+    /// than this render came to is in the way (it was interrupted, or its time was up), that one
+    /// is left alone and all files go beside, under the next free number.
     pub fn write(
         &self,
         picture: &Picture,
+        film: &Film,
         provenance: &Provenance,
-        exposure: f64,
     ) -> Result<Vec<PathBuf>, Refusal> {
-        let better = self.better_film(provenance.samples.count())?;
-        if let (Some((path, there)), false) = (&better, self.quiet) {
-            streams::message(&format!(
-                "{} holds {there} samples per pixel, more than this render, and stays as it is",
-                path.display()
-            ));
+        let better = self.in_the_way(Some(&provenance.origin.identity), film.samples())?;
+        if let (Some((path, why)), false) = (&better, self.wishes.quiet) {
+            streams::message(&format!("{} holds {why}, and stays as it is", path.display()));
         }
+        let sums = if self.wishes.no_state { Sums::LeftOut } else { Sums::Compact(film) };
         let mut written = Vec::new();
         for (path, format) in &self.files {
-            let path = if better.is_some() { beside(path)? } else { path.clone() };
+            let path = match (&better, &self.aside) {
+                (None, _) => path.clone(),
+                (Some(_), Some(aside)) if Some(path.as_path()) == self.state() => aside.clone(),
+                (Some(_), _) => beside(path)?,
+            };
             match format {
-                Format::Png => report::write_png(&path, picture, exposure)?,
-                Format::Exr => report::write_exr(&path, picture, provenance)?,
+                Format::Png => report::write_png(&path, picture, self.wishes.exposure)?,
+                Format::Exr => report::write_exr(&path, picture, sums, provenance)
+                    .map_err(|error| rescued(error, &path, picture, film, provenance))?,
             }
             written.push(path);
+        }
+        if let Some(aside) = self.aside.as_ref().filter(|aside| !written.contains(aside)) {
+            // Nothing is there where the render was too short for a checkpoint.
+            let _ = std::fs::remove_file(aside);
         }
         Ok(written)
     }
 
-    /// A film in the way that holds more than `samples` samples per pixel, and how many.
-    fn better_film(&self, samples: u64) -> Result<Option<(&Path, u64)>, Refusal> {
-        if self.force {
+    /// A film in the way, and what it holds: more samples than these, or others of the same
+    /// picture.
+    fn in_the_way(
+        &self,
+        identity: Option<&Identity>,
+        samples: &SampleRanges,
+    ) -> Result<Option<(&Path, String)>, Refusal> {
+        if self.wishes.force {
             return Ok(None);
         }
-        for (path, _) in self.files.iter().filter(|(_, format)| *format == Format::Exr) {
-            let there = report::film_samples(path)?.unwrap_or(0);
-            if there > samples {
-                return Ok(Some((path, there)));
+        for path in self.films() {
+            let There::Film { samples: there, provenance } = look_at(path)? else { continue };
+            let ours = samples.count();
+            if there > ours {
+                let why =
+                    format!("{there} samples per pixel, more than the {ours} of this render");
+                return Ok(Some((path, why)));
+            }
+            let same = provenance.filter(|there| Some(&there.origin.identity) == identity);
+            if let Some(others) = same.filter(|there| !samples.contains(&there.samples)) {
+                let why = format!("samples {} of the same picture", others.samples);
+                return Ok(Some((path, why)));
             }
         }
         Ok(None)
+    }
+}
+
+/// What is said of a film that cannot be written where it should be: it goes to the system's
+/// folder for temporary files, so that its samples are not lost.
+fn rescued(
+    error: FileError,
+    path: &Path,
+    picture: &Picture,
+    film: &Film,
+    provenance: &Provenance,
+) -> Refusal {
+    let name = path.file_name().unwrap_or_default();
+    let Ok(elsewhere) = beside(&std::env::temp_dir().join(name)) else { return error.into() };
+    match report::write_exr(&elsewhere, picture, Sums::Compact(film), provenance) {
+        Ok(()) => Refusal(format!("error: {error}\nthe film is in {}", elsewhere.display())),
+        Err(_) => error.into(),
     }
 }
 

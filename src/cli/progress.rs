@@ -2,7 +2,7 @@
 
 use super::{on_terminal, streams, units};
 use crate::estimate::Summary;
-use crate::render::{Audience, Plan, Progress};
+use crate::render::{Audience, Begun, Plan, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
 
@@ -16,6 +16,8 @@ pub(super) struct Reporter {
     planned: u64,
     limit: Option<Duration>,
     target: Option<f64>,
+    /// What was there before: it says nothing about the rate of this run.
+    begun: Begun,
     /// Samples and time after the first round, which compiles the kernel and so says
     /// nothing about the rate of the others.
     first: Option<(u64, Duration)>,
@@ -35,9 +37,8 @@ impl Reporter {
             (false, true) => Style::Bar(bar()),
             (false, false) => Style::Lines { next: Duration::ZERO },
         };
-        let planned = plan.samples.end - plan.samples.start;
         let (limit, target) = (plan.time, plan.target_error);
-        Self { style, pixels, planned, limit, target, first: None }
+        Self { style, pixels, planned: plan.total(), limit, target, begun: plan.begun, first: None }
     }
 
     /// A line that stays on the screen.
@@ -58,9 +59,9 @@ impl Reporter {
     }
 
     /// Tells of a round.
-    pub fn observe(&mut self, progress: Progress) {
+    pub fn observe(&mut self, progress: &Progress) {
         let first = *self.first.get_or_insert((progress.done, progress.elapsed));
-        let (text, share) = (self.text(&progress, first), self.share(&progress));
+        let (text, share) = (self.text(progress, first), self.share(progress));
         let tells_rate = progress.done > first.0 || progress.done == self.planned;
         match &mut self.style {
             Style::Quiet => {}
@@ -88,7 +89,10 @@ impl Reporter {
     fn text(&self, progress: &Progress, first: (u64, Duration)) -> String {
         let elapsed = progress.elapsed.as_secs_f64();
         let (samples, seconds) = match progress.done - first.0 {
-            0 => (progress.done, elapsed),
+            0 => {
+                let earlier = self.begun.elapsed.as_secs_f64();
+                (progress.done - self.begun.samples, elapsed - earlier)
+            }
             samples => (samples, elapsed - first.1.as_secs_f64()),
         };
         let frames = samples as f64 / seconds.max(1e-9);

@@ -1,40 +1,37 @@
 //! `candor render`: from a scene file to pictures.
 
 use super::args::{DeviceChoice, EstimatorChoice, RenderArgs};
-use super::output::Outputs;
+use super::checkpoint::Checkpoints;
+use super::log::Log;
+use super::output::{Outputs, Wishes};
 use super::progress::Reporter;
-use super::{
-    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, pilot, refuse, setup, streams,
-    units,
-};
+use super::render_report::Finished;
+use super::{Refusal, choose, interrupt, memory, pilot, refuse, resume, setup, streams, units};
 use crate::bound::sample_scale;
 use crate::estimate::{FIRST_LOOK, Summary, is_look, summarize};
-use crate::film::{Film, SampleRanges};
-use crate::render::{Audience, Outcome, Plan, Progress, Stop, render};
-use crate::report::{ErrorLog, FileError, Picture, Provenance};
+use crate::film::{Film, Identity, SampleRanges};
+use crate::render::{Audience, Begun, Outcome, Plan, Stop, render};
+use crate::report::{Origin, StoredFilm};
 use crate::scene::{MAX_SPP, Scene, Source};
 use crate::tracer::{Description, Ledger};
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     let (scene, source) = setup::load(&args.scene, &args.common, &args.sampling)?;
-    let plan = plan(args, &scene);
-    let outputs = Outputs::new(args)?;
-    if let Some(log) = args.log.as_ref().filter(|log| outputs.contains(log)) {
-        return refuse(format_args!("{}: named both as output and as log", log.display()));
-    }
-    if plan.time.is_none() && plan.target_error.is_none() {
-        outputs.check_films(plan.samples.end - plan.samples.start)?;
-    }
-    let finished = if scene.has_lights() {
-        trace(args, scene, &source, plan)?
-    } else {
-        darkness(args, scene, &plan)?
+    let mut outputs = outputs(args)?;
+    let (scene, begun) = match outputs.state().filter(|_| args.resume) {
+        Some(path) => resume::open(path, scene, args)?,
+        None => (scene, None),
     };
-    let picture = Picture::develop(&finished.film, !finished.scene.has_lights());
-    let provenance = finished.provenance(args);
+    let job = Job::new(args, scene, source, begun)?;
+    job.check_films(&outputs)?;
+    let finished = if job.scene.has_lights() {
+        job.trace(&mut outputs)?
+    } else {
+        job.darkness()?
+    };
     interrupt::writing_begins();
-    let files = outputs.write(&picture, &provenance, args.exposure)?;
+    let files = outputs.write(&finished.picture(), &finished.film, &finished.provenance())?;
     streams::results(&finished.report(args, &files))?;
     if let Some(error) = finished.log_error {
         return Err(error.into());
@@ -46,169 +43,210 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     Ok(finished.code(args))
 }
 
-/// What to render: the samples that were asked for; with `--time` or `--target-error` alone, as
-/// many as fit or as it takes.
-fn plan(args: &RenderArgs, scene: &Scene) -> Plan {
-    let limited = args.time.is_some() || args.target_error.is_some();
-    let spp = match args.sampling.spp {
-        None if limited => MAX_SPP,
-        _ => scene.settings().spp(),
+fn outputs(args: &RenderArgs) -> Result<Outputs, Refusal> {
+    let wishes = Wishes {
+        force: args.force,
+        no_state: args.no_state,
+        quiet: args.common.quiet,
+        exposure: args.exposure,
     };
-    Plan {
-        samples: args.samples.clone().unwrap_or(0..spp),
-        time: args.time,
-        target_error: args.target_error,
+    let outputs = Outputs::new(&args.output, args.scene.file_stem().unwrap_or_default(), wishes)?;
+    match args.log.as_ref().filter(|log| outputs.contains(log)) {
+        Some(log) => refuse(format_args!("{}: named both as output and as log", log.display())),
+        None => Ok(outputs),
     }
 }
 
-/// A render that is over.
-pub(super) struct Finished {
-    /// What was rendered, with the estimator that was used.
-    pub scene: Scene,
-    pub film: Film,
-    pub ledger: Ledger,
-    pub summary: Summary,
-    pub outcome: Outcome,
-    pub tracer: Description,
-    /// Why the log is not whole.
-    pub log_error: Option<FileError>,
+/// What is to be rendered.
+struct Job<'a> {
+    args: &'a RenderArgs,
+    scene: Scene,
+    source: Source,
+    /// The film that is gone on from.
+    begun: Option<StoredFilm>,
+    plan: Plan,
+    /// The samples of the film in the end, unless something else ends it.
+    planned: SampleRanges,
 }
 
-/// The log that was asked for, and what became of it. A log that cannot be written costs no
-/// picture: it is given up, and said at the end.
-struct Log {
-    file: Option<ErrorLog>,
-    error: Option<FileError>,
-}
-
-impl Log {
-    fn create(args: &RenderArgs) -> Result<Self, Refusal> {
-        let file = args.log.as_deref().map(ErrorLog::create).transpose()?;
-        Ok(Self { file, error: None })
+impl<'a> Job<'a> {
+    /// The samples that were asked for and are not there; with `--time` or `--target-error`
+    /// alone, as many as fit or as it takes.
+    fn new(
+        args: &'a RenderArgs,
+        scene: Scene,
+        source: Source,
+        begun: Option<StoredFilm>,
+    ) -> Result<Self, Refusal> {
+        let there = begun.as_ref().map(|film| film.provenance.samples.clone()).unwrap_or_default();
+        let limited = args.time.is_some() || args.target_error.is_some();
+        let spp = match args.sampling.spp {
+            None if limited => MAX_SPP - there.count(),
+            _ => scene.settings().spp(),
+        };
+        let plan = Plan {
+            begun: begun.as_ref().map(|film| earlier(film, args)).unwrap_or_default(),
+            ranges: there.missing(&args.samples.clone().unwrap_or(0..spp)),
+            time: args.time,
+            target_error: args.target_error,
+        };
+        let mut planned = there;
+        plan.ranges.iter().try_for_each(|range| planned.insert(range.clone()))?;
+        Ok(Self { args, scene, source, begun, plan, planned })
     }
 
-    fn observe(&mut self, progress: &Progress) {
-        if let Some(summary) = progress.summary.filter(|look| look.samples == progress.done) {
-            self.add(&summary, progress.elapsed);
+    /// Whether something but the samples may end it.
+    fn is_limited(&self) -> bool {
+        self.plan.time.is_some() || self.plan.target_error.is_some()
+    }
+
+    /// Refuses to trace what could not be written in the end.
+    fn check_films(&self, outputs: &Outputs) -> Result<(), Refusal> {
+        if self.is_limited() {
+            return Ok(());
+        }
+        let undecided = self.args.sampling.estimator == Some(EstimatorChoice::Auto);
+        let identity = (!undecided || self.begun.is_some()).then(|| self.identity());
+        outputs.check_films(identity.as_ref(), &self.planned)
+    }
+
+    fn identity(&self) -> Identity {
+        Identity::of(&self.scene, sample_scale(&self.scene))
+    }
+
+    fn trace(mut self, outputs: &mut Outputs) -> Result<Finished, Refusal> {
+        let (args, common) = (self.args, &self.args.common);
+        let interrupt = interrupt::watch()?;
+        let chosen = choose::choose(&common.device, common.threads)?;
+        setup::check_range(&self.scene, &self.source, &[chosen.arithmetic()])?;
+        let needed = memory::needed(&self.scene, chosen.on_processor());
+        memory::check(self.scene.size(), needed)?;
+        let earlier = self.begun.as_ref().map(StoredFilm::read).transpose()?;
+        let mut log = Log::create(args, self.plan.begun.samples)?;
+        let mut reporter = Reporter::new(common.quiet, self.scene.size().pixels(), &self.plan);
+        if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
+            let twin = "no Vulkan, Metal or DX12 device opens here; the CPU twin takes over";
+            reporter.message(twin);
+        }
+        if args.sampling.estimator == Some(EstimatorChoice::Auto) && self.begun.is_none() {
+            let started = Instant::now();
+            self.scene = pilot::choose_estimator(self.scene, &chosen, interrupt, &reporter)?;
+            self.plan.time = self.plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
+        }
+        let mut tracer = chosen.tracer(&self.scene)?;
+        let origin = self.origin(&tracer.describe());
+        self.announce(&tracer.describe(), needed, &reporter);
+        if let Some((film, begun)) = earlier.zip(self.begun.as_ref()) {
+            tracer.restore(&film, &begun.provenance.spent.ledger)?;
+        }
+        let mut checkpoints = outputs.checkpoint(self.begun.is_some())?.map(|path| {
+            Checkpoints::new(&path, origin.clone(), args.checkpoint_every, args.target_error)
+        });
+        let audience = if log.is_kept() { Audience::Log } else { reporter.audience() };
+        let outcome = render(tracer.as_mut(), &self.plan, interrupt, audience, &mut |at, tracer| {
+            log.observe(at);
+            reporter.observe(at);
+            let wrong = checkpoints.as_mut().map(|all| all.observe(at, tracer)).transpose()?;
+            wrong.flatten().iter().for_each(|wrong| reporter.message(wrong));
+            Ok(())
+        });
+        reporter.finish();
+        let wrong = checkpoints.as_mut().and_then(Checkpoints::finish);
+        wrong.iter().for_each(|wrong| reporter.message(wrong));
+        let outcome = outcome?;
+        let (film, ledger) = (tracer.film()?, tracer.ledger()?);
+        let summary = summary(&film, &ledger, outcome.stop != Stop::Interrupted);
+        log.add(&summary, outcome.elapsed);
+        let (scene, target) = (self.scene, args.target_error);
+        Ok(Finished { scene, origin, film, ledger, summary, outcome, target, log_error: log.end() })
+    }
+
+    /// Says what is about to happen.
+    fn announce(&self, tracer: &Description, needed: u64, reporter: &Reporter) {
+        reporter.message(&format!(
+            "{} pixels on {} ({}), {} of memory",
+            self.scene.size(),
+            tracer.device,
+            tracer.driver,
+            units::bytes(needed),
+        ));
+        let Some(film) = &self.begun else { return };
+        let (file, there) = (film.path().display(), &film.provenance);
+        let time = units::time(there.spent.seconds);
+        reporter.message(&format!("goes on from {file}: samples {}, {time}", there.samples));
+        let made = &there.origin.tracer;
+        if made.and(tracer) != *made {
+            reporter.message(&format!(
+                "warning: {file} was made on {} ({}); its samples may differ from this device's \
+                 by rounding",
+                made.device, made.driver
+            ));
         }
     }
 
-    fn add(&mut self, summary: &Summary, elapsed: Duration) {
-        let added = self.file.as_mut().map_or(Ok(()), |file| file.add(summary, elapsed));
-        if let Err(error) = added {
-            self.error = Some(error);
-            self.file = None;
+    /// A scene without lights is a picture of exact zeros; nothing needs to be traced.
+    fn darkness(self) -> Result<Finished, Refusal> {
+        let on_host = true;
+        memory::check(self.scene.size(), memory::needed(&self.scene, on_host))?;
+        let args = self.args;
+        let mut samples = self.planned.clone();
+        if args.target_error.is_some() {
+            // A target is reached at the first look.
+            samples = SampleRanges::default();
+            samples.insert(0..FIRST_LOOK)?;
         }
-    }
-}
-
-fn trace(
-    args: &RenderArgs,
-    mut scene: Scene,
-    source: &Source,
-    mut plan: Plan,
-) -> Result<Finished, Refusal> {
-    let common = &args.common;
-    let interrupt = interrupt::watch()?;
-    let chosen = choose::choose(&common.device, common.threads)?;
-    setup::check_range(&scene, source, &[chosen.arithmetic()])?;
-    let needed = memory::needed(&scene, chosen.on_processor());
-    memory::check(scene.size(), needed)?;
-    let mut log = Log::create(args)?;
-    let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), &plan);
-    if common.device == DeviceChoice::Auto && chosen.adapter().is_none() {
-        reporter.message("no Vulkan, Metal or DX12 device opens here; the CPU twin takes over");
-    }
-    if args.sampling.estimator == Some(EstimatorChoice::Auto) {
-        let started = Instant::now();
-        scene = pilot::choose_estimator(scene, &chosen, interrupt, &reporter)?;
-        plan.time = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
-    }
-    let mut tracer = chosen.tracer(&scene)?;
-    let description = tracer.describe();
-    reporter.message(&format!(
-        "{}x{} pixels on {} ({}), {} of memory",
-        scene.size().width(),
-        scene.size().height(),
-        description.device,
-        description.driver,
-        units::bytes(needed),
-    ));
-    let audience = if log.file.is_some() { Audience::Log } else { reporter.audience() };
-    let outcome = render(tracer.as_mut(), &plan, interrupt, audience, &mut |progress| {
-        log.observe(&progress);
-        reporter.observe(progress);
-    });
-    reporter.finish();
-    let outcome = outcome?;
-    let film = tracer.film()?;
-    let ledger = tracer.ledger()?;
-    let mut summary = summarize(&film);
-    // Invalid samples add 0 where they should not, and an interruption is no look that the
-    // confidence is spread over: in neither case does the bound hold.
-    let planned = outcome.stop != Stop::Interrupted || is_look(summary.samples);
-    if ledger.count > 0 || !planned {
-        summary.error_bound = None;
-    }
-    log.add(&summary, outcome.elapsed);
-    let log_error = log.error;
-    Ok(Finished { scene, summary, film, ledger, outcome, tracer: description, log_error })
-}
-
-/// A scene without lights is a picture of exact zeros; nothing needs to be traced.
-fn darkness(args: &RenderArgs, scene: Scene, plan: &Plan) -> Result<Finished, Refusal> {
-    let on_host = true;
-    memory::check(scene.size(), memory::needed(&scene, on_host))?;
-    let mut samples = SampleRanges::default();
-    // A target is reached at the first look.
-    let end = plan.target_error.map_or(plan.samples.end, |_| plan.samples.end.min(FIRST_LOOK));
-    samples.insert(plan.samples.start..end)?;
-    let summary = Summary::of_darkness(samples.count());
-    let mut log = Log::create(args)?;
-    log.add(&summary, Duration::ZERO);
-    Ok(Finished {
-        summary,
-        log_error: log.error,
-        film: Film::awaiting(scene.size(), sample_scale(&scene), samples),
-        ledger: Ledger::default(),
-        outcome: Outcome { stop: Stop::Done, elapsed: Duration::ZERO },
-        tracer: Description {
+        let summary = Summary::of_darkness(samples.count());
+        let elapsed = self.plan.begun.elapsed;
+        let mut log = Log::create(args, 0)?;
+        log.add(&summary, elapsed);
+        let origin = self.origin(&Description {
             device: "none, the scene has no lights".to_owned(),
             driver: format!("candor {}", env!("CARGO_PKG_VERSION")),
             software: true,
-        },
-        scene,
-    })
+        });
+        Ok(Finished {
+            summary,
+            origin,
+            log_error: log.end(),
+            film: Film::awaiting(self.scene.size(), sample_scale(&self.scene), samples),
+            ledger: Ledger::default(),
+            outcome: Outcome { stop: Stop::Done, elapsed, next_look: None },
+            target: args.target_error,
+            scene: self.scene,
+        })
+    }
+
+    fn origin(&self, tracer: &Description) -> Origin {
+        let name = self.args.scene.file_name().unwrap_or_default();
+        let before = self.begun.as_ref().map(|film| &film.provenance.origin.tracer);
+        Origin {
+            scene_file: name.to_string_lossy().into_owned(),
+            identity: self.identity(),
+            dark: !self.scene.has_lights(),
+            tracer: before.map_or_else(|| tracer.clone(), |before| before.and(tracer)),
+        }
+    }
 }
 
-impl Finished {
-    /// The exit code.
-    pub(super) fn code(&self, args: &RenderArgs) -> u8 {
-        let missed = self.target_reached(args.target_error) == Some(false);
-        match self.outcome.stop {
-            Stop::Interrupted => INTERRUPTED,
-            _ if missed || (args.strict && self.ledger.count > 0) => FAILED,
-            _ => DONE,
-        }
+/// What is known of a film that is gone on from.
+fn earlier(film: &StoredFilm, args: &RenderArgs) -> Begun {
+    let spent = &film.provenance.spent;
+    Begun {
+        samples: film.provenance.samples.count(),
+        elapsed: Duration::from_secs_f64(spent.seconds),
+        next_look: spent
+            .next_look
+            .filter(|look| Some(look.target) == args.target_error)
+            .map(|look| look.samples),
     }
+}
 
-    pub(super) fn provenance(&self, args: &RenderArgs) -> Provenance {
-        let name = args.scene.file_name().unwrap_or_default();
-        Provenance {
-            scene_file: name.to_string_lossy().into_owned(),
-            scene_hash: self.scene.hash(),
-            estimator: self.scene.settings().estimator().name(),
-            bounces: self.scene.settings().bounces(),
-            seed: self.scene.settings().seed(),
-            samples: self.film.samples().clone(),
-            scale: self.film.scale(),
-            tracer: self.tracer.clone(),
-            seconds: self.seconds(),
-            ledger: self.ledger.clone(),
-            unproven_pixels: self.summary.unproven_pixels,
-            coarse_pixels: self.summary.coarse_pixels,
-            relative_error: self.summary.relative_error,
-            error_bound: self.summary.error_bound,
-        }
+/// The summary of a film. Invalid samples add 0 where they should not, and where a render was
+/// cut short is no look that the confidence is spread over: in neither case does the bound hold.
+pub(super) fn summary(film: &Film, ledger: &Ledger, planned: bool) -> Summary {
+    let mut summary = summarize(film);
+    if ledger.count > 0 || !(planned || is_look(summary.samples)) {
+        summary.error_bound = None;
     }
+    summary
 }

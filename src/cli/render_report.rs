@@ -1,11 +1,30 @@
 //! What is said of a render that is over.
 
 use super::args::RenderArgs;
-use super::render::Finished;
-use super::{ledger, units};
-use crate::render::Stop;
+use super::{DONE, FAILED, INTERRUPTED, ledger, units};
+use crate::estimate::Summary;
+use crate::film::Film;
+use crate::render::{Outcome, Stop};
+use crate::report::{FileError, NextLook, Origin, Picture, Provenance, Spent};
+use crate::scene::Scene;
+use crate::tracer::Ledger;
 use serde::Serialize;
 use std::path::PathBuf;
+
+/// A render that is over.
+pub(super) struct Finished {
+    /// What was rendered, with the estimator that was used.
+    pub scene: Scene,
+    pub origin: Origin,
+    pub film: Film,
+    pub ledger: Ledger,
+    pub summary: Summary,
+    pub outcome: Outcome,
+    /// The error that was aimed at.
+    pub target: Option<f64>,
+    /// Why the log is not whole.
+    pub log_error: Option<FileError>,
+}
 
 /// The `--json` object.
 #[derive(Serialize)]
@@ -16,6 +35,7 @@ struct Json<'a> {
     width: u32,
     height: u32,
     spp: u64,
+    samples: String,
     seconds: f64,
     samples_per_second: Option<f64>,
     relative_error: Option<f64>,
@@ -30,9 +50,34 @@ struct Json<'a> {
 }
 
 impl Finished {
+    /// The exit code.
+    pub(super) fn code(&self, args: &RenderArgs) -> u8 {
+        let missed = self.target_reached() == Some(false);
+        match self.outcome.stop {
+            Stop::Interrupted => INTERRUPTED,
+            _ if missed || (args.strict && self.ledger.count > 0) => FAILED,
+            _ => DONE,
+        }
+    }
+
+    pub(super) fn picture(&self) -> Picture {
+        Picture::develop(&self.film, self.origin.dark)
+    }
+
+    pub(super) fn provenance(&self) -> Provenance {
+        let planned = std::iter::zip(self.target, self.outcome.next_look).next();
+        let next_look = planned.filter(|_| self.outcome.stop != Stop::Target);
+        let spent = Spent {
+            ledger: self.ledger.clone(),
+            seconds: self.seconds(),
+            next_look: next_look.map(|(target, samples)| NextLook { target, samples }),
+        };
+        Provenance::new(self.origin.clone(), spent, &self.film, &self.summary)
+    }
+
     /// Whether the error is certainly at or below the target, if there is one.
-    pub(super) fn target_reached(&self, target: Option<f64>) -> Option<bool> {
-        target.map(|target| self.summary.error_bound.is_some_and(|bound| bound <= target))
+    pub(super) fn target_reached(&self) -> Option<bool> {
+        self.target.map(|target| self.summary.error_bound.is_some_and(|bound| bound <= target))
     }
 
     pub(super) fn seconds(&self) -> f64 {
@@ -51,23 +96,24 @@ impl Finished {
         }
         let written = files.iter().map(|file| format!("wrote {}", file.display()));
         let invalid = ledger::lines(args, &self.scene, &self.ledger);
-        written.chain(invalid).chain([self.line(args.target_error)]).collect::<Vec<_>>().join("\n")
+        written.chain(invalid).chain([self.line()]).collect::<Vec<_>>().join("\n")
     }
 
     fn json(&self, args: &RenderArgs, outputs: &[PathBuf]) -> String {
         let json = Json {
-            device: &self.tracer.device,
-            driver: &self.tracer.driver,
+            device: &self.origin.tracer.device,
+            driver: &self.origin.tracer.driver,
             estimator: self.scene.settings().estimator().name(),
             width: self.film.size().width(),
             height: self.film.size().height(),
             spp: self.summary.samples,
+            samples: self.film.samples().to_string(),
             seconds: self.seconds(),
             samples_per_second: self.rate(),
             relative_error: self.summary.relative_error,
             error_bound: self.summary.error_bound,
-            target_error: args.target_error,
-            target_reached: self.target_reached(args.target_error),
+            target_error: self.target,
+            target_reached: self.target_reached(),
             unproven_pixels: self.summary.unproven_pixels,
             coarse_pixels: self.summary.coarse_pixels,
             invalid_samples: self.ledger.count,
@@ -78,13 +124,13 @@ impl Finished {
     }
 
     /// How it ended.
-    fn ending(&self, target: Option<f64>) -> String {
+    fn ending(&self) -> String {
         let stopped = match self.outcome.stop {
             Stop::Done | Stop::Target => "done",
             Stop::Time => "time is up",
             Stop::Interrupted => "interrupted",
         };
-        match (target, self.target_reached(target)) {
+        match (self.target, self.target_reached()) {
             (Some(target), Some(true)) => format!("{} reached", units::percent(target)),
             (Some(target), _) => format!("{stopped}, {} not reached", units::percent(target)),
             _ => stopped.to_owned(),
@@ -92,9 +138,9 @@ impl Finished {
     }
 
     /// The error, and with a target also what it is at most.
-    fn error(&self, target: Option<f64>) -> String {
+    fn error(&self) -> String {
         let Some(error) = self.summary.relative_error else { return "error unknown".to_owned() };
-        let bound = match (target, self.summary.error_bound) {
+        let bound = match (self.target, self.summary.error_bound) {
             (None, _) => String::new(),
             (_, Some(b)) => format!(", at most {:.3} % with 99 % confidence", 100.0 * b),
             (_, None) => format!(", without a bound ({})", self.why_unbounded()),
@@ -123,24 +169,24 @@ impl Finished {
     }
 
     /// The last line: what was reached, and what the next halving of the error would cost.
-    fn line(&self, target: Option<f64>) -> String {
+    fn line(&self) -> String {
         let mut facts = vec![
-            self.error(target),
+            self.error(),
             format!("{} spp", self.summary.samples),
-            format!("{:.2} s on {}", self.seconds(), self.tracer.device),
+            format!("{:.2} s on {}", self.seconds(), self.origin.tracer.device),
             format!("{} invalid samples", self.ledger.count),
             format!("{} unproven pixels", self.summary.unproven_pixels),
         ];
         if self.summary.coarse_pixels > 0 {
             facts.push(format!("{} pixels near the film's step", self.summary.coarse_pixels));
         }
-        if let Some(target) = target.filter(|_| self.target_reached(target) == Some(false)) {
+        if let Some(target) = self.target.filter(|_| self.target_reached() == Some(false)) {
             facts.extend(self.more(target));
         }
         if self.summary.relative_error.is_some_and(|error| error > 0.0) {
             // The error falls with the square root of the samples: half of it takes four times.
             facts.push(format!("half the error takes {} more", units::time(3.0 * self.seconds())));
         }
-        format!("{}: {}", self.ending(target), facts.join(", "))
+        format!("{}: {}", self.ending(), facts.join(", "))
     }
 }

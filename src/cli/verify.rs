@@ -9,7 +9,7 @@ use super::{
 use crate::cpu::CpuTracer;
 use crate::film::Film;
 use crate::range::Arithmetic;
-use crate::render::{Audience, Plan, Stop, render};
+use crate::render::{Audience, Begun, Plan, Stop, render};
 use crate::scene::Scene;
 use crate::tracer::{Description, Tracer};
 use crate::verify::{ALPHA, MAX_BIAS, Verdict, judge};
@@ -84,10 +84,19 @@ impl Run<'_> {
         scene: &Scene,
         mut tracer: Box<dyn Tracer>,
     ) -> Result<Option<Traced>, Refusal> {
-        let plan = Plan { samples: 0..self.spp, time: None, target_error: None };
+        let plan = Plan {
+            begun: Begun::default(),
+            ranges: vec![0..self.spp],
+            time: None,
+            target_error: None,
+        };
         let mut reporter = Reporter::new(self.quiet, scene.size().pixels(), &plan);
         reporter.message(&format!("{what}: {}", tracer.describe().device));
-        let (audience, mut observe) = (Audience::Nobody, |p| reporter.observe(p));
+        let mut observe = |progress: &_, _: &mut dyn Tracer| {
+            reporter.observe(progress);
+            Ok(())
+        };
+        let audience = Audience::Nobody;
         let outcome = render(tracer.as_mut(), &plan, self.interrupt, audience, &mut observe);
         reporter.finish();
         if outcome?.stop == Stop::Interrupted {

@@ -8,9 +8,11 @@
 //! made from 64- and 128-bit integers, so that the two check each other.
 
 mod fixed;
+mod identity;
 mod ranges;
 
 pub use fixed::{LUMINANCE_WEIGHTS, SampleScale, luminance, square, to_fixed};
+pub use identity::{Identity, NUMBERS};
 pub use ranges::{MAX_SAMPLE_INDEX, RangeError, SampleRanges};
 
 use crate::scene::ImageSize;
@@ -32,15 +34,27 @@ pub enum FilmError {
     #[error(transparent)]
     Range(#[from] RangeError),
     /// The films are of different pictures.
-    #[error("{field} differs: {ours} here, {theirs} there")]
-    Differs {
-        /// What differs.
-        field: &'static str,
-        /// Its value in the film that is added to.
-        ours: String,
-        /// Its value in the film that is added.
-        theirs: String,
-    },
+    #[error("{}", .0.between("here", "there"))]
+    Differs(Difference),
+}
+
+/// What differs between two films: ours, which is added to, and theirs, which is added.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference {
+    /// What differs.
+    pub field: &'static str,
+    /// Its value in our film.
+    pub ours: String,
+    /// Its value in theirs.
+    pub theirs: String,
+}
+
+impl Difference {
+    /// Both values, with words for where they are.
+    #[must_use]
+    pub fn between(&self, ours: &str, theirs: &str) -> String {
+        format!("{} differs: {} {ours}, {} {theirs}", self.field, self.ours, self.theirs)
+    }
 }
 
 /// Exact sums of the samples of one picture. A clone shares the sums until one of the two is
@@ -99,6 +113,12 @@ impl Film {
         Ok(self.samples.insert(range)?)
     }
 
+    /// CRC-32 of the words, little-endian, row by row from the top.
+    #[must_use]
+    pub fn checksum(&self) -> u32 {
+        crc32fast::hash(bytemuck::cast_slice(&self.pixels))
+    }
+
     /// The words of every pixel, to be written by whoever claimed the samples.
     pub fn pixels_mut(&mut self) -> &mut [PixelWords] {
         Arc::make_mut(&mut self.pixels).as_mut_slice()
@@ -124,7 +144,7 @@ impl Film {
     /// If size or scale differ.
     pub fn check_fits(&self, size: ImageSize, scale: SampleScale) -> Result<(), FilmError> {
         let differs =
-            |field, ours: String, theirs: String| Err(FilmError::Differs { field, ours, theirs });
+            |field, ours, theirs| Err(FilmError::Differs(Difference { field, ours, theirs }));
         if self.size != size {
             return differs("size", size.to_string(), self.size.to_string());
         }

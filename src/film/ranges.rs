@@ -84,6 +84,26 @@ impl SampleRanges {
         Ok(union)
     }
 
+    /// The samples of `wanted` that are not there, ascending.
+    #[must_use]
+    pub fn missing(&self, wanted: &Range<u64>) -> Vec<Range<u64>> {
+        let mut missing = Vec::new();
+        let mut from = wanted.start;
+        for there in self.0.iter().filter(|r| r.end > wanted.start && r.start < wanted.end) {
+            missing.push(from..there.start);
+            from = there.end;
+        }
+        missing.push(from..wanted.end);
+        missing.retain(|range| range.start < range.end);
+        missing
+    }
+
+    /// Whether every sample of the other is there.
+    #[must_use]
+    pub fn contains(&self, other: &Self) -> bool {
+        other.0.iter().all(|range| self.missing(range).is_empty())
+    }
+
     /// Samples that both hold: one run of them, if there are any.
     #[must_use]
     pub fn shared(&self, other: &Self) -> Option<Range<u64>> {

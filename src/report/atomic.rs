@@ -1,10 +1,11 @@
-//! Files that appear whole or not at all: a temporary file beside the target, flushed
-//! to the disk, then renamed over it.
+//! Files that appear whole or not at all, and stay: a temporary file beside the target, flushed
+//! to the disk, then renamed over it; then the folder is flushed, which holds the name.
 
 use super::FileError;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Write};
 use std::path::Path;
+use tempfile::NamedTempFile;
 
 /// Checks that files can be made in the folder of `path`, before work starts.
 ///
@@ -38,14 +39,57 @@ pub fn replace(
     file.as_file().sync_all().map_err(|error| fail(error.to_string()))?;
     allow_reading(file.as_file());
     file.persist(path).map_err(|error| fail(error.error.to_string()))?;
-    Ok(())
+    flush_folder(folder_of(path)).map_err(|error| fail(error.to_string()))
 }
 
-fn temporary(path: &Path) -> Result<tempfile::NamedTempFile, FileError> {
-    tempfile::Builder::new().prefix(".candor-").tempfile_in(folder_of(path)).map_err(|error| {
+/// A locked file, whose name tells what it is to become. Those that killed processes have left
+/// for the same target are taken away.
+fn temporary(path: &Path) -> Result<NamedTempFile, FileError> {
+    let prefix = prefix(path);
+    sweep(folder_of(path), &prefix);
+    let named = tempfile::Builder::new().prefix(&prefix).tempfile_in(folder_of(path));
+    let file = named.map_err(|error| {
         // The whole error names the temporary file, which says nothing to the user.
         FileError::new(path, &format!("cannot be written: {}", error.kind()))
-    })
+    })?;
+    match file.as_file().try_lock() {
+        // Another process took it for one that was left, and is about to take it away.
+        Err(TryLockError::WouldBlock) => temporary(path),
+        Ok(()) if !file.path().exists() => temporary(path),
+        // Without locks (some network file systems), nothing is ever taken for left.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+    }
+}
+
+/// The beginning of the names of temporary files for a target. It holds the checksum of the
+/// target's name in place of the name, which may be as long as names can be.
+fn prefix(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+    format!(".candor-{:08x}-", crc32fast::hash(name))
+}
+
+/// Takes away temporary files that nobody holds a lock on. What cannot be taken away stays, which
+/// is no reason not to write.
+fn sweep(folder: &Path, prefix: &str) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(prefix)) {
+        if let Ok(left) = File::open(entry.path())
+            && left.try_lock().is_ok()
+        {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Makes the renaming last. Windows neither needs nor allows it.
+#[cfg(unix)]
+fn flush_folder(folder: &Path) -> std::io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(not(unix))]
+fn flush_folder(_: &Path) -> std::io::Result<()> {
+    Ok(())
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -1,6 +1,6 @@
 //! The log of a render's error: a CSV file that grows while the picture is made.
 
-use super::{FileError, check_writable};
+use super::{FileError, check_writable, replace};
 use crate::estimate::Summary;
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Write};
@@ -24,16 +24,23 @@ pub struct ErrorLog {
 }
 
 impl ErrorLog {
-    /// Begins a log. Of the files that are there, only an older log or an empty file is
-    /// replaced.
+    /// Begins a log, or goes on with that of a render of `begun` samples per pixel: its rows up
+    /// to there stay. Of the files that are there, only an older log or an empty file is replaced.
     ///
     /// # Errors
     /// If another file is there, or none can be written.
-    pub fn create(path: &Path) -> Result<Self, FileError> {
+    pub fn create(path: &Path, begun: u64) -> Result<Self, FileError> {
         if !may_replace(path)? {
             return Err(FileError::new(path, &"is no error log of candor, and stays as it is"));
         }
         let fail = |error| failed(path, &error);
+        let rows = rows(path, begun).map_err(fail)?;
+        if !rows.is_empty() {
+            let text = format!("{HEADER}\n{}", rows.concat());
+            replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| e.to_string()))?;
+            let file = File::options().append(true).open(path).map_err(fail)?;
+            return Ok(Self { path: path.to_owned(), file, last: begun });
+        }
         let mut file = File::create(path).map_err(fail)?;
         writeln!(file, "{HEADER}").map_err(fail)?;
         Ok(Self { path: path.to_owned(), file, last: 0 })
@@ -61,6 +68,19 @@ impl ErrorLog {
         // In one piece, so that whoever reads along never sees half a row.
         self.file.write_all(row.as_bytes()).map_err(|error| failed(&self.path, &error))
     }
+}
+
+/// The rows of a log, each with its line end, that are of at most `begun` samples per pixel. The
+/// last may have been cut short, and is left out then.
+fn rows(path: &Path, begun: u64) -> std::io::Result<Vec<String>> {
+    if begun == 0 || !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let text = std::fs::read_to_string(path)?;
+    let rows = text.split_inclusive('\n').skip(1).filter(|row| row.ends_with('\n'));
+    let samples = |row: &str| row.split(',').next().and_then(|count| count.parse::<u64>().ok());
+    let earlier = rows.filter(|row| samples(row).is_some_and(|count| count <= begun));
+    Ok(earlier.map(str::to_owned).collect())
 }
 
 fn may_replace(path: &Path) -> Result<bool, FileError> {

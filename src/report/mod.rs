@@ -5,15 +5,16 @@ mod atomic;
 pub mod cost;
 mod difference;
 mod exr;
-mod exr_read;
 mod log;
 mod picture;
 mod png;
 
 pub use atomic::{check_writable, replace};
 pub use difference::{FULL_COLOUR, write as write_difference};
-pub use exr::{Provenance, film_samples, write as write_exr};
-pub use exr_read::{PictureHeader, StoredPicture};
+pub use exr::{
+    NextLook, Origin, PictureHeader, Provenance, Spent, StoredFilm, StoredPicture, Sums, There, look_at,
+    write as write_exr,
+};
 pub use log::ErrorLog;
 pub use picture::Picture;
 pub use png::write as write_png;

@@ -1,6 +1,7 @@
 //! The identity of a scene: two films may be added only if their scenes agree.
 
 use std::fmt;
+use std::str::FromStr;
 
 use glam::DVec3;
 use sha2::{Digest, Sha256};
@@ -25,6 +26,24 @@ impl SceneHash {
 impl fmt::Display for SceneHash {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+    }
+}
+
+/// Reads what `Display` writes.
+impl FromStr for SceneHash {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected 64 hexadecimal digits, not \"{text}\"");
+        if text.len() != 64 || !text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            return Err(expected());
+        }
+        let mut bytes = [0; 32];
+        for (i, byte) in bytes.iter_mut().enumerate() {
+            let digits = &text[2 * i..2 * i + 2];
+            *byte = u8::from_str_radix(digits, 16).map_err(|_| expected())?;
+        }
+        Ok(Self(bytes))
     }
 }
 

@@ -1,12 +1,13 @@
 //! Reads a picture from an EXR file, candor's own or another program's.
 
-use super::exr::{PREFIX, REC_709, STANDARD_ERROR};
-use super::{FileError, printable};
+use super::header::text;
+use super::{REC_709, STANDARD_ERROR};
+use crate::report::FileError;
 use crate::estimate::{Bars, Measured};
 use crate::film::SampleRanges;
 use crate::scene::ImageSize;
 use exr::meta::MetaData;
-use exr::meta::attribute::{AttributeValue, Chromaticities, SampleType, Text};
+use exr::meta::attribute::{Chromaticities, SampleType, Text};
 use exr::meta::header::Header;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, read};
 use std::path::{Path, PathBuf};
@@ -220,15 +221,6 @@ fn without_colours(meta: &MetaData) -> String {
         names.push("…".to_owned());
     }
     format!("has no channels R, G and B; it has: {}", names.join(", "))
-}
-
-/// A text that candor wrote.
-fn text(part: &Header, name: &str) -> Option<String> {
-    let name = Text::new_or_none(format!("{PREFIX}{name}"))?;
-    match part.own_attributes.other.get(&name)? {
-        AttributeValue::Text(text) => Some(printable(&text.to_string())),
-        _ => None,
-    }
 }
 
 fn same_primaries(a: &Chromaticities, b: &Chromaticities) -> bool {
