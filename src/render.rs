@@ -99,8 +99,7 @@ pub struct Outcome {
 }
 
 /// Told of the progress after every round; it may look at the tracer's film.
-pub type Observer<'a> =
-    dyn FnMut(&Progress, &mut dyn Tracer) -> Result<(), TraceError> + 'a;
+pub type Observer<'a> = dyn FnMut(&Progress, &mut dyn Tracer) -> Result<(), TraceError> + 'a;
 
 /// Renders according to plan.
 ///

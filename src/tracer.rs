@@ -73,13 +73,8 @@ impl InvalidReason {
     /// The reason of that [`name`](Self::name).
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        let all = [
-            Self::Unfinished,
-            Self::NotANumber,
-            Self::Infinite,
-            Self::Negative,
-            Self::AboveBound,
-        ];
+        let all =
+            [Self::Unfinished, Self::NotANumber, Self::Infinite, Self::Negative, Self::AboveBound];
         all.into_iter().find(|reason| reason.name() == name)
     }
 

@@ -32,6 +32,9 @@ pub(super) enum Command {
     /// Checks this machine's device against the f64 reference; exits 1 unless it agrees.
     #[command(allow_negative_numbers = true)]
     Verify(VerifyArgs),
+    /// Adds films of the same picture, each of other samples, such as `render --samples` makes.
+    #[command(allow_negative_numbers = true)]
+    Merge(MergeArgs),
     /// Compares two EXR pictures with their error bars; exits 1 if they differ by more.
     Diff(DiffArgs),
     /// Measures what accuracy costs in time on this device: a table, cost.csv, plots
@@ -58,7 +61,7 @@ impl Command {
             Self::Cost(args) => args.common.threads,
             Self::Replay(args) => args.common.threads,
             Self::Explain(args) => args.common.threads,
-            Self::Diff(_) | Self::Devices => None,
+            Self::Merge(_) | Self::Diff(_) | Self::Devices => None,
         }
     }
 
@@ -218,6 +221,32 @@ pub(super) struct CostArgs {
     /// Folder for cost.csv, cost.html, cost.svg and cost.png; default: the current one.
     #[arg(short, long, value_name = "FOLDER", default_value = ".", hide_default_value = true)]
     pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct MergeArgs {
+    /// Films (EXR), in any order; a film may be merged itself.
+    #[arg(required = true, value_name = "FILM")]
+    pub films: Vec<PathBuf>,
+    /// Output file, .exr or .png; may be given more than once, and may be one of the films.
+    #[arg(short, long, value_name = "FILE", required = true)]
+    pub output: Vec<PathBuf>,
+    /// Brightens the PNG by this many stops.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0,
+          value_parser = parse_exposure)]
+    pub exposure: f64,
+    /// Leave the exact sums out of the EXR: a smaller file, which nothing can be added to.
+    #[arg(long)]
+    pub no_state: bool,
+    /// Replace a film even if it holds other samples.
+    #[arg(long)]
+    pub force: bool,
+    /// Neither progress nor warnings on stderr.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Results on stdout as one JSON object.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -33,6 +33,13 @@ pub(super) fn check(size: ImageSize, needed: u64) -> Result<(), Refusal> {
     }
 }
 
+/// Refuses to merge films of `size` that do not fit: two of them are in memory, the whole and a
+/// part of it.
+pub(super) fn check_merge(size: ImageSize) -> Result<(), Refusal> {
+    let bytes = 2 * BYTES_PER_PIXEL + PICTURE_BYTES;
+    lack(size, u64::from(size.pixels()) * bytes).map_or(Ok(()), refuse)
+}
+
 /// Refuses to compare two pictures of `size` that do not fit.
 pub(super) fn check_comparison(size: ImageSize) -> Result<(), Refusal> {
     match lack(size, u64::from(size.pixels()) * COMPARISON_BYTES) {

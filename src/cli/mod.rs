@@ -16,6 +16,7 @@ mod interrupt;
 mod ledger;
 mod log;
 mod memory;
+mod merge;
 mod output;
 mod pilot;
 mod progress;
@@ -78,6 +79,7 @@ pub fn main() -> ExitCode {
     let ended = std::panic::catch_unwind(|| match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Verify(args) => verify::run(args),
+        Command::Merge(args) => merge::run(args),
         Command::Diff(args) => diff::run(args),
         Command::Cost(args) => cost::run(args),
         Command::Replay(args) => replay::run(args),

@@ -36,10 +36,10 @@ pub(super) struct Wishes {
 }
 
 impl Outputs {
-    /// The files that the user asked for, checked before work starts. What is named after `stem`
-    /// are those that are left to candor: both, and the film that keeps the state of a render to
-    /// a PNG alone.
-    pub fn new(asked: &[PathBuf], stem: &OsStr, wishes: Wishes) -> Result<Self, Refusal> {
+    /// The files that the user asked for, checked before work starts. With a `stem`, what is left
+    /// to candor is named after it: both, if none was asked for, and the film that keeps the
+    /// state of a render to a PNG alone.
+    pub fn new(asked: &[PathBuf], stem: Option<&OsStr>, wishes: Wishes) -> Result<Self, Refusal> {
         let mut files = Vec::new();
         for path in asked {
             let Some(format) = format_of(path) else {
@@ -53,12 +53,14 @@ impl Outputs {
             }
             files.push((path.clone(), format));
         }
-        if files.is_empty() {
-            files.push((named(stem, "png"), Format::Png));
-        }
         let has_film = files.iter().any(|&(_, format)| format == Format::Exr);
-        if !has_film && !(wishes.no_state && !asked.is_empty()) {
-            files.push((named(stem, "exr"), Format::Exr));
+        if let Some(stem) = stem.filter(|_| !has_film) {
+            if asked.is_empty() {
+                files.push((named(stem, "png"), Format::Png));
+            }
+            if asked.is_empty() || !wishes.no_state {
+                files.push((named(stem, "exr"), Format::Exr));
+            }
         }
         // Films first: what is lost with a picture can be made from its film.
         files.sort_by_key(|&(_, format)| format != Format::Exr);
@@ -172,8 +174,7 @@ impl Outputs {
             let There::Film { samples: there, provenance } = look_at(path)? else { continue };
             let ours = samples.count();
             if there > ours {
-                let why =
-                    format!("{there} samples per pixel, more than the {ours} of this render");
+                let why = format!("{there} samples per pixel, more than the {ours} of this render");
                 return Ok(Some((path, why)));
             }
             let same = provenance.filter(|there| Some(&there.origin.identity) == identity);

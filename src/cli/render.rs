@@ -25,11 +25,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     };
     let job = Job::new(args, scene, source, begun)?;
     job.check_films(&outputs)?;
-    let finished = if job.scene.has_lights() {
-        job.trace(&mut outputs)?
-    } else {
-        job.darkness()?
-    };
+    let finished = if job.scene.has_lights() { job.trace(&mut outputs)? } else { job.darkness()? };
     interrupt::writing_begins();
     let files = outputs.write(&finished.picture(), &finished.film, &finished.provenance())?;
     streams::results(&finished.report(args, &files))?;
@@ -50,7 +46,7 @@ fn outputs(args: &RenderArgs) -> Result<Outputs, Refusal> {
         quiet: args.common.quiet,
         exposure: args.exposure,
     };
-    let outputs = Outputs::new(&args.output, args.scene.file_stem().unwrap_or_default(), wishes)?;
+    let outputs = Outputs::new(&args.output, args.scene.file_stem(), wishes)?;
     match args.log.as_ref().filter(|log| outputs.contains(log)) {
         Some(log) => refuse(format_args!("{}: named both as output and as log", log.display())),
         None => Ok(outputs),
@@ -143,13 +139,14 @@ impl<'a> Job<'a> {
             Checkpoints::new(&path, origin.clone(), args.checkpoint_every, args.target_error)
         });
         let audience = if log.is_kept() { Audience::Log } else { reporter.audience() };
-        let outcome = render(tracer.as_mut(), &self.plan, interrupt, audience, &mut |at, tracer| {
-            log.observe(at);
-            reporter.observe(at);
-            let wrong = checkpoints.as_mut().map(|all| all.observe(at, tracer)).transpose()?;
-            wrong.flatten().iter().for_each(|wrong| reporter.message(wrong));
-            Ok(())
-        });
+        let outcome =
+            render(tracer.as_mut(), &self.plan, interrupt, audience, &mut |at, tracer| {
+                log.observe(at);
+                reporter.observe(at);
+                let wrong = checkpoints.as_mut().map(|all| all.observe(at, tracer)).transpose()?;
+                wrong.flatten().iter().for_each(|wrong| reporter.message(wrong));
+                Ok(())
+            });
         reporter.finish();
         let wrong = checkpoints.as_mut().and_then(Checkpoints::finish);
         wrong.iter().for_each(|wrong| reporter.message(wrong));

@@ -139,13 +139,16 @@ impl Finished {
 
     /// The error, and with a target also what it is at most.
     fn error(&self) -> String {
-        let Some(error) = self.summary.relative_error else { return "error unknown".to_owned() };
+        let error = error_text(self.summary.relative_error);
+        if self.summary.relative_error.is_none() {
+            return error;
+        }
         let bound = match (self.target, self.summary.error_bound) {
             (None, _) => String::new(),
             (_, Some(b)) => format!(", at most {:.3} % with 99 % confidence", 100.0 * b),
             (_, None) => format!(", without a bound ({})", self.why_unbounded()),
         };
-        format!("error {:.3} %{bound}", 100.0 * error)
+        format!("{error}{bound}")
     }
 
     /// Why nothing can be said of how large the error is at most.
@@ -170,23 +173,35 @@ impl Finished {
 
     /// The last line: what was reached, and what the next halving of the error would cost.
     fn line(&self) -> String {
-        let mut facts = vec![
-            self.error(),
-            format!("{} spp", self.summary.samples),
-            format!("{:.2} s on {}", self.seconds(), self.origin.tracer.device),
-            format!("{} invalid samples", self.ledger.count),
-            format!("{} unproven pixels", self.summary.unproven_pixels),
-        ];
-        if self.summary.coarse_pixels > 0 {
-            facts.push(format!("{} pixels near the film's step", self.summary.coarse_pixels));
-        }
-        if let Some(target) = self.target.filter(|_| self.target_reached() == Some(false)) {
-            facts.extend(self.more(target));
-        }
-        if self.summary.relative_error.is_some_and(|error| error > 0.0) {
-            // The error falls with the square root of the samples: half of it takes four times.
-            facts.push(format!("half the error takes {} more", units::time(3.0 * self.seconds())));
-        }
+        let missed = self.target.filter(|_| self.target_reached() == Some(false));
+        let more = missed.and_then(|target| self.more(target));
+        let facts = facts(&self.provenance(), self.error(), more);
         format!("{}: {}", self.ending(), facts.join(", "))
     }
+}
+
+/// What a film came to, beginning with its error; `more` is what something else would cost.
+pub(super) fn facts(film: &Provenance, error: String, more: Option<String>) -> Vec<String> {
+    let Spent { ledger, seconds, .. } = &film.spent;
+    let mut facts = vec![
+        error,
+        format!("{} spp", film.samples.count()),
+        format!("{seconds:.2} s on {}", film.origin.tracer.device),
+        format!("{} invalid samples", ledger.count),
+        format!("{} unproven pixels", film.unproven_pixels),
+    ];
+    if film.coarse_pixels > 0 {
+        facts.push(format!("{} pixels near the film's step", film.coarse_pixels));
+    }
+    facts.extend(more);
+    if film.relative_error.is_some_and(|error| error > 0.0) {
+        // The error falls with the square root of the samples: half of it takes four times.
+        facts.push(format!("half the error takes {} more", units::time(3.0 * seconds)));
+    }
+    facts
+}
+
+/// An error as people read it.
+pub(super) fn error_text(error: Option<f64>) -> String {
+    error.map_or("error unknown".to_owned(), |error| format!("error {:.3} %", 100.0 * error))
 }

@@ -52,9 +52,8 @@ impl Identity {
     pub fn check(&self, other: &Self) -> Result<(), Difference> {
         let pairs = std::iter::zip(self.fields(), other.fields());
         let different = pairs.into_iter().find(|((_, ours), (_, theirs))| ours != theirs);
-        different.map_or(Ok(()), |((field, ours), (_, theirs))| {
-            Err(Difference { field, ours, theirs })
-        })
+        different
+            .map_or(Ok(()), |((field, ours), (_, theirs))| Err(Difference { field, ours, theirs }))
     }
 
     fn fields(&self) -> [(&'static str, String); 7] {

@@ -12,8 +12,8 @@ mod png;
 pub use atomic::{check_writable, replace};
 pub use difference::{FULL_COLOUR, write as write_difference};
 pub use exr::{
-    NextLook, Origin, PictureHeader, Provenance, Spent, StoredFilm, StoredPicture, Sums, There, look_at,
-    write as write_exr,
+    NextLook, Origin, PictureHeader, Provenance, Spent, StoredFilm, StoredPicture, Sums, There,
+    look_at, write as write_exr,
 };
 pub use log::ErrorLog;
 pub use picture::Picture;

@@ -198,10 +198,7 @@ pub(super) fn required<T: FromStr<Err: fmt::Display>>(
     }
 }
 
-fn optional<T: FromStr<Err: fmt::Display>>(
-    part: &Header,
-    name: &str,
-) -> Result<Option<T>, String> {
+fn optional<T: FromStr<Err: fmt::Display>>(part: &Header, name: &str) -> Result<Option<T>, String> {
     let parsed = text(part, name).map(|value| {
         let parsed = value.parse();
         parsed.map_err(|error| format!("{PREFIX}{name} in its header is \"{value}\": {error}"))

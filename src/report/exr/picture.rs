@@ -2,9 +2,9 @@
 
 use super::header::text;
 use super::{REC_709, STANDARD_ERROR};
-use crate::report::FileError;
 use crate::estimate::{Bars, Measured};
 use crate::film::SampleRanges;
+use crate::report::FileError;
 use crate::scene::ImageSize;
 use exr::meta::MetaData;
 use exr::meta::attribute::{Chromaticities, SampleType, Text};

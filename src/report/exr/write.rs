@@ -107,10 +107,8 @@ fn header(
         let name = Text::from(format!("{PREFIX}{name}").as_str());
         own.other.insert(name, AttributeValue::Text(latin(&value)));
     }
-    let shared = ImageAttributes {
-        chromaticities: Some(REC_709),
-        ..ImageAttributes::with_size(size)
-    };
+    let shared =
+        ImageAttributes { chromaticities: Some(REC_709), ..ImageAttributes::with_size(size) };
     Header::new(Text::default(), size, described.collect())
         .with_encoding(sums.compression(), BlockDescription::ScanLines, LineOrder::Increasing)
         .with_shared_attributes(shared)
