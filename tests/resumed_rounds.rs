@@ -8,14 +8,14 @@ mod support {
 use candor::cpu::CpuTracer;
 use candor::film::{Film, SampleRanges};
 use candor::render::{Audience, Begun, Outcome, Plan, Stop, render};
-use candor::scene::Scene;
+use candor::scene::{Estimator, Scene};
 use candor::tracer::{Description, Ledger, TraceError, Tracer};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use support::scenes::{many, size};
 
-const TARGET: f64 = 0.2;
+const TARGET: f64 = 0.6;
 
 /// The twin, which keeps what it was asked for.
 struct Recorder {
@@ -54,7 +54,9 @@ impl Tracer for Recorder {
 }
 
 fn scene() -> Scene {
-    many(size(12, 8))
+    let scene = many(size(6, 4));
+    let settings = scene.settings().with_estimator(Estimator::Mis);
+    scene.with_settings(settings)
 }
 
 fn ranges(text: &str) -> SampleRanges {
@@ -119,39 +121,48 @@ fn a_film_that_holds_all_is_not_traced() {
     assert_eq!((outcome.stop, tracer.asked.len(), left.len()), (Stop::Done, 0, 0));
 }
 
-/// A render to the target in rounds of at most seven samples, so that most of them end between
-/// two looks.
-fn uninterrupted() -> (Film, Vec<Left>) {
-    let mut tracer = Recorder::new(&scene());
-    let pieces = (0..100_000).step_by(7).map(|start| start..start + 7).collect();
-    let plan = Plan { ranges: pieces, ..plan(&SampleRanges::default(), &(0..1), Some(TARGET)) };
-    let (outcome, left) = rendered(&mut tracer, &plan);
+fn to_target(tracer: &mut Recorder, begun: Begun, there: &SampleRanges) -> (Film, Vec<Left>) {
+    let plan = Plan { begun, ..plan(there, &(0..1 << 31), Some(TARGET)) };
+    let (outcome, left) = rendered(tracer, &plan);
     assert_eq!(outcome.stop, Stop::Target);
-    let film = tracer.film().expect("a film");
-    assert!(film.samples().count() > 100, "{} leave too few looks", film.samples());
-    (film, left)
+    (tracer.film().expect("a film"), left)
 }
 
-fn resumed(left: &Left, keeps_plan: bool) -> Film {
+fn resumed(left: &Left) -> Film {
     let mut tracer = Recorder::new(&scene());
     tracer.restore(&left.film, &Ledger::default()).expect("the same picture");
-    let next_look = left.begun.next_look.filter(|_| keeps_plan);
-    let mut plan = plan(left.film.samples(), &(0..1 << 32), Some(TARGET));
-    plan.begun = Begun { next_look, ..left.begun };
-    assert_eq!(rendered(&mut tracer, &plan).0.stop, Stop::Target);
-    tracer.film().expect("a film")
+    to_target(&mut tracer, left.begun, left.film.samples()).0
 }
 
 /// Whichever round was the last before a kill, the one included that reached the target.
 #[test]
 fn a_target_is_reached_with_the_same_samples_from_any_round() {
-    let (film, left) = uninterrupted();
-    assert_eq!(left.last().map(|last| last.begun.samples), Some(film.samples().count()));
+    let mut tracer = Recorder::new(&scene());
+    let (film, mut left) = to_target(&mut tracer, Begun::default(), &SampleRanges::default());
+    let end = film.samples().count();
+    assert!(end > 64, "{end} samples leave too few looks");
+    assert_eq!(left.last().map(|last| last.begun.samples), Some(end));
     for round in &left {
-        let resumed = resumed(round, true);
-        let (from, to) = (round.begun.samples, resumed.samples());
-        assert!(resumed == film, "from {from} to {to}, not {}", film.samples());
+        assert!(resumed(round) == film, "from {} not to {end}", round.begun.samples);
     }
-    // The injected fault: without the plan, looks come at once, and the film is another one.
-    assert!(left.iter().any(|round| resumed(round, false) != film));
+    // The injected fault: the look that reached the target is not looked at again.
+    let last = left.last_mut().expect("rounds");
+    last.begun.next_look = Some(end + 1);
+    assert!(resumed(last) != film);
+}
+
+/// Wherever a limit ended it, at a look or between two.
+#[test]
+fn a_target_is_reached_with_the_same_samples_from_any_limit() {
+    let (film, _) =
+        to_target(&mut Recorder::new(&scene()), Begun::default(), &SampleRanges::default());
+    for limit in (1..film.samples().count()).step_by(13) {
+        let mut tracer = Recorder::new(&scene());
+        let limited = plan(&SampleRanges::default(), &(0..limit), Some(TARGET));
+        let (outcome, _) = rendered(&mut tracer, &limited);
+        assert_eq!(outcome.stop, Stop::Done);
+        let begun = Begun { samples: limit, next_look: outcome.next_look, ..Begun::default() };
+        let left = Left { film: tracer.film().expect("a film"), begun };
+        assert!(resumed(&left) == film, "from {limit}");
+    }
 }

@@ -12,6 +12,7 @@ mod explain;
 mod film;
 mod films;
 mod hostile;
+mod kept;
 #[cfg(unix)]
 mod kills;
 mod merge;
