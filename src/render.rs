@@ -218,7 +218,11 @@ impl Watch {
         }
         if let (Some(target), true) = (self.target, done == self.target_look) {
             self.target_reached = summary.error_bound.is_some_and(|bound| bound <= target);
-            self.target_look = next_look(done, summary.spread.samples_to(target));
+            // The look that reaches the target stays the next one: who goes on from a film that
+            // was written just now looks again, and ends here too.
+            if !self.target_reached {
+                self.target_look = next_look(done, summary.spread.samples_to(target));
+            }
         }
         self.summary = Some(summary);
         let pause = looked.elapsed().div_f64(LOOK_SHARE).max(Duration::from_secs(1));

@@ -169,8 +169,7 @@ impl Outputs {
         }
         let aside = self.aside.as_ref().filter(|aside| !written.contains(aside));
         if let Some(aside) = aside.filter(|_| failed.is_none()) {
-            // Nothing is there where the render was too short for a checkpoint.
-            let _ = std::fs::remove_file(aside);
+            take_away(aside, &provenance.origin.identity, film.samples());
         }
         Ok((written, failed))
     }
@@ -199,6 +198,15 @@ impl Outputs {
             }
         }
         Ok(None)
+    }
+}
+
+/// Takes the last checkpoint away, all of whose samples are in a film that is written. Nothing is
+/// there where the render was too short for one, and another render's film may be: that stays.
+fn take_away(checkpoint: &Path, identity: &Identity, samples: &SampleRanges) {
+    let Ok(There::Film { provenance: Some(there), .. }) = look_at(checkpoint) else { return };
+    if there.origin.identity == *identity && samples.contains(&there.samples) {
+        let _ = std::fs::remove_file(checkpoint);
     }
 }
 

@@ -183,9 +183,12 @@ impl<'a> Job<'a> {
         let args = self.args;
         let mut samples = self.planned.clone();
         if args.target_error.is_some() {
-            // A target is reached at the first look.
-            samples = SampleRanges::default();
-            samples.insert(0..FIRST_LOOK)?;
+            // A target is reached at the first look, or by whatever is there.
+            let begun = self.begun.as_ref().map(|film| film.provenance.samples.clone());
+            samples = begun.unwrap_or_default();
+            if samples.count() == 0 {
+                samples.insert(0..FIRST_LOOK)?;
+            }
         }
         let summary = Summary::of_darkness(samples.count());
         let elapsed = self.plan.begun.elapsed;

@@ -35,11 +35,11 @@ impl ErrorLog {
         }
         let fail = |error| failed(path, &error);
         let rows = rows(path, begun).map_err(fail)?;
-        if !rows.is_empty() {
+        if let Some(last) = rows.last().and_then(|row| samples(row)) {
             let text = format!("{HEADER}\n{}", rows.concat());
             replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| e.to_string()))?;
             let file = File::options().append(true).open(path).map_err(fail)?;
-            return Ok(Self { path: path.to_owned(), file, last: begun });
+            return Ok(Self { path: path.to_owned(), file, last });
         }
         let mut file = File::create(path).map_err(fail)?;
         writeln!(file, "{HEADER}").map_err(fail)?;
@@ -78,9 +78,13 @@ fn rows(path: &Path, begun: u64) -> std::io::Result<Vec<String>> {
     }
     let text = std::fs::read_to_string(path)?;
     let rows = text.split_inclusive('\n').skip(1).filter(|row| row.ends_with('\n'));
-    let samples = |row: &str| row.split(',').next().and_then(|count| count.parse::<u64>().ok());
     let earlier = rows.filter(|row| samples(row).is_some_and(|count| count <= begun));
     Ok(earlier.map(str::to_owned).collect())
+}
+
+/// The first column of a row.
+fn samples(row: &str) -> Option<u64> {
+    row.split(',').next()?.parse().ok()
 }
 
 fn may_replace(path: &Path) -> Result<bool, FileError> {

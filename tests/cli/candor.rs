@@ -100,6 +100,23 @@ pub fn without_vulkan(command: &mut Command) -> &mut Command {
         .env("VK_ICD_FILENAMES", "/nonexistent")
 }
 
+/// In a shell under which no file may grow beyond so many blocks of 512 bytes, as on a disk that
+/// is full.
+#[cfg(unix)]
+pub fn with_files_up_to(blocks: u64, command: &Command) -> Command {
+    limited(&format!("trap '' XFSZ; ulimit -f {blocks}"), command)
+}
+
+/// In a shell that sets limits first.
+#[cfg(unix)]
+pub fn limited(limits: &str, command: &Command) -> Command {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &format!("{limits}; exec \"$@\""), "sh"]).arg(command.get_program());
+    shell.args(command.get_args()).stdin(Stdio::null());
+    shell.current_dir(command.get_current_dir().expect("a folder of its own"));
+    shell
+}
+
 /// A process under way. Its streams are files, as with `> out 2> err`.
 pub struct Running {
     child: Child,
@@ -126,6 +143,16 @@ impl Running {
     pub fn wait_for(&mut self, text: &str) {
         self.until(&format!("\"{text}\" on stderr"), |running| {
             said(&running.stderr).contains(text).then_some(())
+        });
+    }
+
+    /// Waits until a condition holds while the process runs; `what` names it.
+    #[cfg(unix)]
+    pub fn wait_until(&mut self, what: &str, mut holds: impl FnMut() -> bool) {
+        self.until(what, |running| {
+            let ended = running.child.try_wait().expect("it is our child");
+            assert!(ended.is_none(), "ended before {what}: {}", said(&running.stderr));
+            holds().then_some(())
         });
     }
 

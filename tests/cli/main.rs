@@ -3,14 +3,24 @@
 mod arguments;
 mod auto;
 mod candor;
+#[cfg(unix)]
+mod checkpoints;
 mod cost;
 mod devices;
 mod diff;
 mod explain;
+mod film;
 mod films;
 mod hostile;
+mod kept;
+#[cfg(unix)]
+mod kills;
+mod merge;
 mod pictures;
 mod replay;
+mod resume;
+mod resume_refused;
+mod resume_target;
 #[cfg(unix)]
 mod signals;
 mod streams;

@@ -1,0 +1,127 @@
+//! What films cost on disk: a checkpoint's time, the rate and memory of merging, bytes per pixel.
+
+use super::program::{Cost, Folder};
+use candor::report::{Picture, StoredFilm, Sums, write_exr};
+
+const SIZE: &str = "1920x1080";
+const PIXELS: f64 = 1920.0 * 1080.0;
+/// Bytes of a film of that size in memory.
+const FILM: f64 = 52.0 * PIXELS;
+
+/// Films that are merged.
+const PARTS: u32 = 100;
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    f64::midpoint(values[(n - 1) / 2], values[n / 2])
+}
+
+/// A checkpoint every two seconds against none, the same samples in turns. The film at the end is
+/// the same and costs both the same.
+#[expect(clippy::cast_precision_loss, reason = "counts of threads")]
+pub fn checkpoints(turns: u32, spp: u64) {
+    let folder = Folder::new();
+    let render = |every: &str| {
+        let arguments = format!(
+            "render scene.toml --device gpu --size {SIZE} --quiet --force -o film.exr --spp {spp} \
+             --checkpoint-every {every}"
+        );
+        let _ = std::fs::remove_file(folder.path("film.exr"));
+        folder.measure(&arguments, "film.exr")
+    };
+    let mut rows = Vec::new();
+    for turn in 0..turns {
+        let (with, without) = if turn % 2 == 0 {
+            let with = render("2s");
+            (with, render("1h"))
+        } else {
+            let without = render("1h");
+            (render("2s"), without)
+        };
+        rows.push((with, without));
+    }
+    let cores = std::thread::available_parallelism().map_or(1.0, |n| n.get() as f64);
+    // The last time that the file is replaced, if that was seen, is by the final film.
+    let written = |with: &Cost, without: &Cost| {
+        f64::from(with.replaced.saturating_sub(without.replaced).max(1))
+    };
+    let each = |what: fn(&Cost) -> f64| {
+        median(rows.iter().map(|(a, b)| (what(a) - what(b)) / written(a, b)).collect())
+    };
+    let (wall, processor) = (each(|cost| cost.wall), each(|cost| cost.processor));
+    let counts = median(rows.iter().map(|(a, b)| written(a, b)).collect());
+    let length = median(rows.iter().map(|(_, without)| without.wall).collect());
+    println!("| renders | checkpoints in each | a checkpoint | every 60 s |\n|---|---|---|---|");
+    println!(
+        "| {turns} pairs of {length:.1} s | {counts:.0} | {:.0} ms of time, {:.0} ms of processor \
+         | {:.2} % of the time, {:.2} % of {cores} cores |\n",
+        1e3 * wall,
+        1e3 * processor,
+        wall / 0.6,
+        processor / (0.6 * cores)
+    );
+}
+
+/// A hundred films of one sample each.
+pub fn merging() {
+    let folder = Folder::new();
+    let needed = u64::from(PARTS) * 80_000_000;
+    let free = folder.free();
+    assert!(free > needed, "the parts take up to {needed} bytes of disk, {free} are free");
+    let mut films = String::new();
+    for part in 0..PARTS {
+        let samples = format!("{part}..{}", part + 1);
+        let render = "render scene.toml --device gpu --quiet";
+        folder.run(&format!("{render} --size {SIZE} --samples {samples} -o {part}.exr"));
+        films += &format!(" {part}.exr");
+    }
+    let cost = folder.measure(&format!("merge --quiet{films} -o sum.exr"), "sum.exr");
+    let stored = StoredFilm::open(&folder.path("sum.exr")).expect("a film");
+    assert_eq!(stored.provenance.samples.to_string(), format!("0..{PARTS}"));
+    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    let memory = cost.memory as f64 / FILM;
+    println!("| films of {SIZE} | time | rate | processor | peak memory |\n|---|---|---|---|---|");
+    println!(
+        "| {PARTS} | {:.1} s | {:.1} Mpixel/s | {:.1} s | {memory:.2} films of {:.0} MB |\n",
+        cost.wall,
+        f64::from(PARTS) * PIXELS / 1e6 / cost.wall,
+        cost.processor,
+        FILM / 1e6
+    );
+}
+
+/// Bytes per pixel of the classic scene's files.
+#[expect(clippy::cast_precision_loss, reason = "sizes of files")]
+pub fn sizes() {
+    const SMALL: (u32, u32) = (320, 180);
+    let folder = Folder::new();
+    let pixels = f64::from(SMALL.0 * SMALL.1);
+    let bytes =
+        |name: &str| folder.path(name).metadata().expect("the file is there").len() as f64 / pixels;
+    println!("| estimator | spp | checkpoint | film | `--no-state` |\n|---|---|---|---|---|");
+    for (estimator, spp) in [
+        ("implicit", 16),
+        ("implicit", 256),
+        ("implicit", 4096),
+        ("mis", 16),
+        ("mis", 256),
+        ("mis", 4096),
+    ] {
+        let render = format!(
+            "render scene.toml --device gpu --quiet --force --size {}x{} --spp {spp} --estimator \
+             {estimator} -o",
+            SMALL.0, SMALL.1
+        );
+        folder.run(&format!("{render} film.exr"));
+        folder.run(&format!("{render} flat.exr --no-state"));
+        let stored = StoredFilm::open(&folder.path("film.exr")).expect("a film");
+        let film = stored.read().expect("a whole film");
+        let quick = folder.path("quick.exr");
+        write_exr(&quick, &Picture::develop(&film, false), Sums::Quick(&film), &stored.provenance)
+            .expect("it can be written");
+        let [quick, kept, flat] = ["quick.exr", "film.exr", "flat.exr"].map(bytes);
+        println!("| {estimator} | {spp} | {quick:.1} | {kept:.1} | {flat:.1} |");
+    }
+    println!();
+}

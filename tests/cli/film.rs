@@ -1,0 +1,91 @@
+//! Films as any reader of EXR sees them, and films made wrong on purpose.
+
+use crate::candor::Folder;
+use candor::report::{Picture, StoredFilm, Sums, write_exr};
+use exr::meta::attribute::AttributeValue;
+use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// The bits of all channels, so that equal means equal.
+pub fn channels(path: &Path) -> BTreeMap<String, Vec<u32>> {
+    let image = read_first_flat_layer_from_file(path).expect("the film can be read");
+    let list = image.layer_data.channel_data.list.into_iter();
+    list.map(|channel| {
+        let bits = match channel.sample_data {
+            FlatSamples::F32(samples) => samples.into_iter().map(f32::to_bits).collect(),
+            FlatSamples::U32(samples) => samples,
+            FlatSamples::F16(_) => panic!("{} is in half floats", channel.name),
+        };
+        (channel.name.to_string(), bits)
+    })
+    .collect()
+}
+
+/// Texts of the header.
+pub fn attributes(path: &Path) -> BTreeMap<String, String> {
+    let image = read_first_flat_layer_from_file(path).expect("the film can be read");
+    let texts = image.layer_data.attributes.other.into_iter();
+    texts
+        .filter_map(|(name, value)| match value {
+            AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+            _ => None,
+        })
+        .collect()
+}
+
+/// What is the same in two films of the same samples: all pixels, the header but for the time
+/// that they took, and the length of the file.
+#[derive(PartialEq)]
+struct Comparable {
+    channels: BTreeMap<String, Vec<u32>>,
+    attributes: BTreeMap<String, String>,
+    length: usize,
+}
+
+impl Comparable {
+    fn read(path: &Path) -> Self {
+        let mut attributes = attributes(path);
+        let seconds = attributes.remove("candor.seconds").expect("films say how long they took");
+        let length = fs::read(path).expect("the film is there").len() - seconds.len();
+        Self { channels: channels(path), attributes, length }
+    }
+}
+
+/// Whether two films hold the same, to the bit.
+pub fn are_same(ours: &Path, theirs: &Path) -> bool {
+    let [ours, theirs] = [ours, theirs].map(Comparable::read);
+    ours.channels.contains_key("sum.L2.3") && ours == theirs
+}
+
+/// Asserts that two films in a folder hold the same, to the bit.
+#[track_caller]
+pub fn assert_same(folder: &Folder, ours: &str, theirs: &str) {
+    let [a, b] = [ours, theirs].map(|name| folder.path(name));
+    let [left, right] = [&a, &b].map(|path| attributes(path));
+    assert!(are_same(&a, &b), "{ours} and {theirs} differ; their headers: {left:?} {right:?}");
+}
+
+/// Writes the film in a file anew, changed, without compression as a checkpoint is or with it.
+pub fn rewrite(path: &Path, quick: bool, change: impl FnOnce(&mut candor::film::Film)) {
+    let stored = StoredFilm::open(path).expect("a film");
+    let mut film = stored.read().expect("a whole film");
+    change(&mut film);
+    let picture = Picture::develop(&film, false);
+    let sums = if quick { Sums::Quick(&film) } else { Sums::Compact(&film) };
+    write_exr(path, &picture, sums, &stored.provenance).expect("it can be written");
+}
+
+/// Changes the value of a header's text for another one of the same length.
+pub fn patch(path: &Path, name: &str, from: &str, to: &str) {
+    assert_eq!(from.len(), to.len());
+    let mut start = format!("candor.{name}\0string\0").into_bytes();
+    start.extend(u32::try_from(from.len()).expect("short").to_le_bytes());
+    start.extend(from.as_bytes());
+    let mut bytes = fs::read(path).expect("a film");
+    let at = bytes.windows(start.len()).position(|window| window == start);
+    let end = at.unwrap_or_else(|| panic!("candor.{name} is not {from}")) + start.len();
+    bytes[end - to.len()..end].copy_from_slice(to.as_bytes());
+    fs::write(path, bytes).expect("it can be written");
+}
