@@ -47,8 +47,9 @@ class Film:
 
     def write(self, path):
         """Writes it anew, as any program may that copies all channels and attributes."""
-        # OpenEXR changes what it is given.
-        OpenEXR.File(dict(self.header), dict(self.pixels)).write(str(path))
+        # OpenEXR counts the chunks itself, and changes what it is given.
+        header = {key: value for key, value in self.header.items() if key != "chunkCount"}
+        OpenEXR.File(header, dict(self.pixels)).write(str(path))
 
     def sum_of(self, name):
         """A sum of every pixel, as Python's integers."""
@@ -94,7 +95,7 @@ class Film:
 
 
 def is_rounded(stored, exact, rounding):
-    """Whether f32 values are what values within a relative `rounding` of the exact ones round to."""
+    """Whether f32 values are the nearest to values within a relative `rounding` of the exact."""
     least, most = ((exact * factor).astype("float32") for factor in (1 - rounding, 1 + rounding))
     return (least <= stored) & (stored <= most)
 

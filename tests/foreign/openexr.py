@@ -73,8 +73,9 @@ class Folder:
         }
         if name == "checkpoint":
             return expected | {
-                "device": twin.said("device"), "driver": twin.said("driver"), "samples": is_from_zero,
-                "spp": number, "seconds": number, "unprovenPixels": number, "coarsePixels": number,
+                "device": twin.said("device"), "driver": twin.said("driver"),
+                "samples": is_from_zero, "spp": number, "seconds": number,
+                "unprovenPixels": number, "coarsePixels": number,
                 "relativeError": number, "errorBound": number,
                 "nextLook": lambda text: re.fullmatch(r"[0-9]+ for 0\.001", text) is not None,
             }
@@ -109,9 +110,10 @@ def faults_of_kinds(films):
     """Whether the films have the pixels that they are here for."""
     film, one, coarse = films["film"], films["one"], films["coarse"]
     infinite = numpy.isinf(film.pixels["stderr.L"])
+    unsure = numpy.isinf(one.pixels["stderr.L"])
     kinds = {
         "film: light that was found, and some that was not": infinite.any() and not infinite.all(),
-        "one: light of unknown error": (one.pixels["R"][numpy.isinf(one.pixels["stderr.L"])] > 0).any(),
+        "one: light of unknown error": (one.pixels["R"][unsure] > 0).any(),
         "coarse: coarse pixels, and others": 0 < int(coarse.said("coarsePixels")) < (
             coarse.pixels["R"] > 0).sum(),
         "lightless: no error": not films["lightless"].pixels["stderr.L"].any(),
@@ -135,7 +137,8 @@ def injected(film):
         other = copy.copy(film)
         other.header = {k: v for k, v in film.header.items() if k != f"candor.{key}"}
         yield f"no {key}", other
-    row, column = numpy.argwhere(numpy.isfinite(film.pixels["stderr.L"]) & (film.pixels["R"] > 0))[0]
+    found = numpy.isfinite(film.pixels["stderr.L"]) & (film.pixels["R"] > 0)
+    row, column = numpy.argwhere(found)[0]
     for name in WORDS:
         yield f"{name} one more", changed(film, name, row, column, numpy.uint32(1).__add__)
     for name in COLOURS:
