@@ -65,6 +65,12 @@ class Film:
         words = numpy.stack([self.pixels[word] for word in WORDS], axis=-1)
         return zlib.crc32(words.astype("<u4").tobytes())
 
+    def header_checksum(self):
+        """CRC-32 of the other attributes of candor's, in the order of their names."""
+        lines = [f"candor.{name}={value}\n" for name, value in sorted(self.attributes().items())
+                 if name != "headerChecksum"]
+        return zlib.crc32("".join(lines).encode())
+
     def means(self, name):
         """Mean radiance, each the f64 next to the exact quotient."""
         mean = self.sum_of(name) / int(self.said("spp"))
@@ -140,6 +146,7 @@ def faults_of_counts(film):
         "filmShift": int(of("filmShift")) == 64 - math.frexp(float(of("sampleBound")))[1],
         "unprovenPixels": int(of("unprovenPixels")) == black,
         "coarsePixels": int(of("coarsePixels")) == coarse,
+        "headerChecksum": of("headerChecksum") == str(film.header_checksum()),
         "seconds": 0 <= float(of("seconds")) < math.inf and (dark or float(of("seconds")) > 0),
     }
     stated = film.attributes().get("relativeError")

@@ -19,7 +19,8 @@ from film import (COLOURS, ERROR_ROUNDING, MEAN_ROUNDING, WORDS, Film, faults_of
                   faults_of_channels, faults_of_counts, faults_of_pixels, faults_of_window,
                   is_rounded)
 
-SPHERES, LIGHTLESS, COARSE = "two-spheres.toml", "lightless.toml", "coarse.toml"
+# File names are not English everywhere.
+SPHERES, LIGHTLESS, COARSE = "two-spheres.toml", "sphère 球.toml", "coarse.toml"
 # Scene, width, height and seed of each film.
 FILMS = {
     "film": (SPHERES, 96, 72, "7"),
@@ -69,7 +70,7 @@ class Folder:
             "version": self.version, "numbers": "1", "scene": scene, "estimator": "implicit",
             "bounces": "2", "seed": seed, "software": "true",
             "dark": "true" if scene == LIGHTLESS else "false", "invalidSamples": "0",
-            "checksum": number,
+            "checksum": number, "headerChecksum": number,
         }
         if name == "checkpoint":
             return expected | {

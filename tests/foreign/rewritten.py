@@ -83,6 +83,7 @@ def check_refused(checks, tools, film):
     word = film.pixels["sum.G.1"].copy()
     word[36, 48] ^= 1
     variant(film, {"sum.G.1": word}).write(tools.folder / "torn.exr")
+    variant(film, **{"candor.samples": "0..128"}).write(tools.folder / "samples.exr")
     plain = copy.copy(film)
     plain.header = {k: v for k, v in film.header.items() if not k.startswith("candor.")}
     plain.write(tools.folder / "plain.exr")
@@ -90,6 +91,7 @@ def check_refused(checks, tools, film):
         "oiiotool.exr": "holds no exact sums",
         "integers.exr": "its sums have the checksum",
         "torn.exr": "its sums have the checksum",
+        "samples.exr": "its header does not have the checksum",
         "picture.exr": "holds no exact sums",
         "half.exr": "holds no exact sums",
         "plain.exr": "is no film of this program",
