@@ -164,7 +164,7 @@ def changed(film, name, row, column, change):
 def faults_of_example(text, path, film):
     """Runs the example of docs/film.md: what it computes must be in R, G, B and stderr.L."""
     (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    (path.parent / "example.py").write_text(code)
+    (path.parent / "example.py").write_text(code, "utf-8")
     sys.argv = ["example.py", str(path)]
     with contextlib.redirect_stdout(io.StringIO()) as said:
         names = runpy.run_path(str(path.parent / "example.py"))
@@ -217,7 +217,7 @@ def main(path, document, version):
         expected = folder.expected(name, twins.get(name, film))
         checks.hold(f"{name}: {film.said('samples')}, channels, window, attributes, sums, means, "
                     "errors", faults_of(film, name, expected))
-    check_others(checks, folder, films, Path(document).read_text())
+    check_others(checks, folder, films, Path(document).read_text("utf-8"))
     film, expected = films["film"], folder.expected("film", twins["film"])
     faulty = list(injected(film))
     undetected = [what for what, other in faulty if not faults_of(other, "film", expected)]
