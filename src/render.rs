@@ -2,8 +2,8 @@
 //! stated error, out of time or interrupted.
 
 use crate::estimate::{FIRST_LOOK, Summary, is_look, next_look, summarize};
+use crate::film::SampleRanges;
 use crate::tracer::{TraceError, Tracer};
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -19,8 +19,8 @@ const LOOK_SHARE: f64 = 0.01;
 pub struct Plan {
     /// What the tracer's film holds already.
     pub begun: Begun,
-    /// Samples of every pixel that are to be added, in this order.
-    pub ranges: Vec<Range<u64>>,
+    /// Samples of every pixel that are to be added, in ascending order.
+    pub ranges: SampleRanges,
     /// Stop after this long, [`Begun::elapsed`] included, with whatever samples there are; at
     /// least one.
     pub time: Option<Duration>,
@@ -44,7 +44,7 @@ impl Plan {
     /// Samples of every pixel at the end, unless something else ends the render.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.begun.samples + self.ranges.iter().map(|range| range.end - range.start).sum::<u64>()
+        self.begun.samples + self.ranges.count()
     }
 }
 
@@ -118,7 +118,7 @@ pub fn render(
     let started = Instant::now();
     let elapsed = || plan.begun.elapsed + started.elapsed();
     let mut watch = Watch::new(plan, audience);
-    let mut ranges = plan.ranges.iter().cloned();
+    let mut ranges = plan.ranges.as_slice().iter().cloned();
     let mut range = 0..0;
     let (mut done, mut count) = (plan.begun.samples, 1);
     if plan.target_error.is_some() && done > 0 {
@@ -129,7 +129,7 @@ pub fn render(
             break Stop::Target;
         }
         if range.is_empty() {
-            let Some(next) = ranges.find(|range| !range.is_empty()) else { break Stop::Done };
+            let Some(next) = ranges.next() else { break Stop::Done };
             range = next;
         }
         // At least one sample of every pixel is traced, so that there is a picture.

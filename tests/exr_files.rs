@@ -1,9 +1,13 @@
 //! EXR files as other programs write them, and as accidents leave them.
 
-use candor::film::{SampleRanges, SampleScale};
-use candor::report::{Picture, PictureHeader, Provenance, StoredPicture, write_exr};
-use candor::scene::ImageSize;
-use candor::tracer::{Description, Ledger};
+use candor::cpu::rng::{SampleKey, random_bits};
+use candor::film::{Film, Identity, NUMBERS, SampleScale};
+use candor::report::{
+    NextLook, Origin, Picture, PictureHeader, Provenance, Spent, StoredFilm, StoredPicture, Sums,
+    write_exr,
+};
+use candor::scene::{Estimator, ImageSize};
+use candor::tracer::{Description, InvalidReason, InvalidSample, Ledger};
 use exr::prelude::{
     AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, Layer,
     LayerAttributes, LineOrder, Vec2, WritableImage, f16,
@@ -32,33 +36,72 @@ fn picture() -> Picture {
     }
 }
 
-/// A film as candor writes it.
-fn ours(folder: &TempDir) -> PathBuf {
-    let path = folder.path().join("ours.exr");
-    let mut samples = SampleRanges::default();
-    samples.insert(0..16).expect("room for it");
-    samples.insert(32..48).expect("room for it");
-    let tracer = Description { device: "D".into(), driver: "d".into(), software: true };
+/// Samples 0..16 and 32..48 of a picture, and words that no sample has made.
+fn film() -> Film {
+    let mut film = Film::new(picture().size, SampleScale::from_bound(64.0));
+    film.claim(0..16).expect("room for it");
+    film.claim(32..48).expect("room for it");
+    for (pixel, words) in (0..).zip(film.pixels_mut()) {
+        let bits = |block| random_bits(SampleKey { pixel, index: 0 }, block, 0);
+        let all = [bits(0), bits(1), bits(2), bits(3)].concat();
+        *words = std::array::from_fn(|word| all[word]);
+    }
+    film
+}
+
+fn provenance() -> Provenance {
     let scene =
         candor::scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/two-spheres.toml"));
-    let provenance = Provenance {
-        scene_file: "s.toml".to_owned(),
-        scene_hash: scene.expect("a scene").hash(),
-        estimator: "implicit",
-        bounces: 2,
-        seed: 5,
-        samples,
-        scale: SampleScale::from_bound(64.0),
-        tracer,
-        seconds: 1.0,
-        ledger: Ledger::default(),
+    let reasons = [InvalidReason::NotANumber, InvalidReason::Unfinished];
+    let records = (7..).zip(reasons).map(|(pixel, reason)| InvalidSample {
+        pixel,
+        index: u64::from(pixel) << 50,
+        reason,
+    });
+    let identity = Identity {
+        numbers: NUMBERS,
+        size: picture().size,
+        scene: scene.expect("a scene").hash(),
+        estimator: Estimator::Mis,
+        bounces: 3,
+        seed: u32::MAX,
+        scale: film().scale(),
+    };
+    Provenance {
+        origin: Origin {
+            scene_file: "s.toml".to_owned(),
+            identity,
+            dark: false,
+            tracer: Description { device: "D".into(), driver: "d".into(), software: true },
+        },
+        spent: Spent {
+            ledger: Ledger { count: 9, records: records.collect() },
+            seconds: 1.125,
+            next_look: Some(NextLook { target: 0.1, samples: 608 }),
+        },
+        samples: film().samples().clone(),
         unproven_pixels: 1,
-        coarse_pixels: 0,
+        coarse_pixels: 2,
         relative_error: Some(0.1),
         error_bound: None,
-    };
-    write_exr(&path, &picture(), &provenance).expect("it can be written");
+    }
+}
+
+/// A film as candor writes it.
+fn ours(folder: &TempDir) -> PathBuf {
+    written(folder, Sums::Compact(&film()))
+}
+
+fn written(folder: &TempDir, sums: Sums) -> PathBuf {
+    let path = folder.path().join("ours.exr");
+    write_exr(&path, &picture(), sums, &provenance()).expect("it can be written");
     path
+}
+
+fn read_film(path: &Path) -> Result<(Film, Provenance), String> {
+    let stored = StoredFilm::open(path).map_err(|error| error.to_string())?;
+    let film = stored.read().map_err(|error| error.to_string())?;
+    Ok((film, stored.provenance))
 }
 
 /// The same picture as another program may write it.
@@ -110,13 +153,48 @@ fn a_film_comes_back_as_it_was_written() {
     let header = found.header;
     assert_eq!(header.size, picture().size);
     assert_eq!(header.samples.map(|samples| samples.to_string()).as_deref(), Some("0..16,32..48"));
-    assert_eq!((header.seed, header.bounces.as_deref()), (Some(5), Some("2")));
-    assert_eq!(
-        (header.estimator.as_deref(), header.device.as_deref()),
-        (Some("implicit"), Some("D"))
-    );
+    assert_eq!((header.seed, header.bounces.as_deref()), (Some(u32::MAX), Some("3")));
+    assert_eq!((header.estimator.as_deref(), header.device.as_deref()), (Some("mis"), Some("D")));
     assert_eq!(header.scene_hash.map(|hash| hash.len()), Some(64));
     assert!(!header.half && !header.other_primaries);
+}
+
+/// Sums and provenance, compressed or not, to the bit.
+#[test]
+fn a_film_can_be_gone_on_from() {
+    let folder = TempDir::new().expect("a folder");
+    for sums in [Sums::Compact(&film()), Sums::Quick(&film())] {
+        let (found, from) = read_film(&written(&folder, sums)).expect("a film");
+        assert!(found == film(), "other sums");
+        assert_eq!(from, provenance());
+    }
+    let error = read_film(&written(&folder, Sums::LeftOut)).expect_err("no sums");
+    assert!(error.contains("--no-state"), "{error}");
+}
+
+/// One wrong byte anywhere makes a refusal or the same film, never another one: checksums cover
+/// the sums and what the header says of them.
+#[test]
+fn corrupt_films_are_never_taken_for_others() {
+    let folder = TempDir::new().expect("a folder");
+    let mut refused = 0;
+    for sums in [Sums::Compact(&film()), Sums::Quick(&film())] {
+        let path = written(&folder, sums);
+        let whole = std::fs::read(&path).expect("it is there");
+        for place in (0..whole.len()).step_by(29) {
+            let mut bytes = whole.clone();
+            bytes[place] ^= [0x01, 0x80, 0xff][place % 3];
+            std::fs::write(&path, &bytes).expect("written");
+            match read_film(&path) {
+                Ok((found, from)) => {
+                    assert_eq!(found.pixels(), film().pixels(), "byte {place}");
+                    assert_eq!(from, provenance(), "byte {place}");
+                }
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(refused > 1000, "{refused} refused");
 }
 
 #[test]
@@ -166,6 +244,7 @@ fn torn_files_are_refused() {
         let length = whole.len() * i / 50;
         std::fs::write(&path, &whole[..length]).expect("written");
         assert!(read(&path).is_err(), "{length} of {} bytes", whole.len());
+        assert!(read_film(&path).is_err(), "{length} of {} bytes", whole.len());
     }
 }
 

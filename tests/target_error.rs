@@ -12,8 +12,8 @@ mod support {
 
 use candor::cpu::CpuTracer;
 use candor::estimate::{Summary, estimate, summarize};
-use candor::film::Film;
-use candor::render::{Audience, Plan, Stop, render};
+use candor::film::{Film, SampleRanges};
+use candor::render::{Audience, Begun, Plan, Stop, render};
 use candor::scene::{MAX_SPP, Scene};
 use candor::tracer::Tracer;
 use std::num::NonZeroUsize;
@@ -51,14 +51,24 @@ fn one_thread(scene: &Scene) -> CpuTracer {
     CpuTracer::new(scene, NonZeroUsize::new(1)).expect("a thread")
 }
 
+fn until(target: f64) -> Plan {
+    Plan {
+        begun: Begun::default(),
+        ranges: SampleRanges::default().missing(&(0..MAX_SPP)),
+        time: None,
+        target_error: Some(target),
+    }
+}
+
 /// As `candor render --target-error` does it.
 fn by_bound(known: &Known, scene: &Scene, target: f64) -> Stopped {
     let mut tracer = one_thread(scene);
-    let plan = Plan { samples: 0..MAX_SPP, time: None, target_error: Some(target) };
     let mut looks = Vec::new();
     let never = AtomicBool::new(false);
-    let outcome = render(&mut tracer, &plan, &never, Audience::Nobody, &mut |progress| {
+    let (plan, nobody) = (until(target), Audience::Nobody);
+    let outcome = render(&mut tracer, &plan, &never, nobody, &mut |progress, _| {
         looks.extend(progress.summary.filter(|look| look.samples == progress.done));
+        Ok(())
     });
     assert_eq!(outcome.expect("the twin traces").stop, Stop::Target);
     let film = tracer.film().expect("a film");
@@ -153,12 +163,12 @@ fn a_tiny_lamp_is_waited_for() {
 #[test]
 fn the_picture_depends_on_the_target_alone() {
     let known = hollow();
-    let plan = Plan { samples: 0..MAX_SPP, time: None, target_error: Some(0.1) };
+    let plan = until(0.1);
     let never = AtomicBool::new(false);
     let films = [(1, Audience::Nobody), (2, Audience::Log)].map(|(threads, audience)| {
         let threads = NonZeroUsize::new(threads);
         let mut tracer = CpuTracer::new(&known.scene, threads).expect("threads");
-        render(&mut tracer, &plan, &never, audience, &mut |_| {}).expect("the twin traces");
+        render(&mut tracer, &plan, &never, audience, &mut |_, _| Ok(())).expect("the twin traces");
         tracer.film().expect("a film")
     });
     assert!(films[0] == films[1]);

@@ -110,6 +110,22 @@ pub(super) struct SamplingArgs {
     pub estimator: Option<EstimatorChoice>,
 }
 
+/// How files are written.
+#[derive(Debug, Args)]
+pub(super) struct WriteArgs {
+    /// Brightens the PNG by this many stops.
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0,
+          value_parser = parse_exposure)]
+    pub exposure: f64,
+    /// Leave the exact sums out of the EXR, and write no checkpoints: a smaller file, which
+    /// nothing can be added to.
+    #[arg(long)]
+    pub no_state: bool,
+    /// Replace a film even if it holds other samples, and an EXR of another program.
+    #[arg(long)]
+    pub force: bool,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
     /// Scene file (TOML).
@@ -138,10 +154,8 @@ pub(super) struct RenderArgs {
     /// Exit with code 1 if any sample was invalid; the pictures are written all the same.
     #[arg(long)]
     pub strict: bool,
-    /// Brightens the PNG by this many stops.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0,
-          value_parser = parse_exposure)]
-    pub exposure: f64,
+    #[command(flatten)]
+    pub write: WriteArgs,
     /// Go on from the EXR named by -o (or SCENE.exr): trace those of the samples that it does not
     /// hold, gaps first. --spp and --time count what is there. Where nothing is there, start.
     #[arg(long, conflicts_with = "no_state")]
@@ -150,13 +164,6 @@ pub(super) struct RenderArgs {
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = parse_time,
           conflicts_with = "no_state")]
     pub checkpoint_every: Duration,
-    /// Leave the exact sums out of the EXR, and write no checkpoints: smaller files, which nothing
-    /// can be added to.
-    #[arg(long)]
-    pub no_state: bool,
-    /// Replace a film even if it holds other samples.
-    #[arg(long)]
-    pub force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -231,16 +238,8 @@ pub(super) struct MergeArgs {
     /// Output file, .exr or .png; may be given more than once, and may be one of the films.
     #[arg(short, long, value_name = "FILE", required = true)]
     pub output: Vec<PathBuf>,
-    /// Brightens the PNG by this many stops.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0,
-          value_parser = parse_exposure)]
-    pub exposure: f64,
-    /// Leave the exact sums out of the EXR: a smaller file, which nothing can be added to.
-    #[arg(long)]
-    pub no_state: bool,
-    /// Replace a film even if it holds other samples.
-    #[arg(long)]
-    pub force: bool,
+    #[command(flatten)]
+    pub write: WriteArgs,
     /// Neither progress nor warnings on stderr.
     #[arg(long)]
     pub quiet: bool,

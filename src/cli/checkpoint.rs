@@ -1,5 +1,7 @@
 //! Checkpoints: the film so far, written beside the render by a thread of its own.
 
+use super::args::RenderArgs;
+use super::progress::Reporter;
 use super::render::summary;
 use crate::film::Film;
 use crate::render::Progress;
@@ -11,7 +13,8 @@ use std::time::{Duration, Instant};
 
 /// Where the film so far goes from time to time.
 pub(super) struct Checkpoints {
-    path: PathBuf,
+    /// Nowhere, if no state is kept.
+    path: Option<PathBuf>,
     origin: Origin,
     every: Duration,
     target: Option<f64>,
@@ -21,23 +24,32 @@ pub(super) struct Checkpoints {
 }
 
 impl Checkpoints {
-    /// Checkpoints in `path`, of a render to the error `target` if there is one.
-    pub fn new(path: &Path, origin: Origin, every: Duration, target: Option<f64>) -> Self {
-        let (path, last) = (path.to_owned(), Instant::now());
-        Self { path, origin, every, target, last, writer: None, written: false }
+    /// Checkpoints in `path`.
+    pub fn new(path: Option<PathBuf>, origin: &Origin, args: &RenderArgs) -> Self {
+        Self {
+            path,
+            origin: origin.clone(),
+            every: args.checkpoint_every,
+            target: args.target_error,
+            last: Instant::now(),
+            writer: None,
+            written: false,
+        }
     }
 
-    /// Begins to write one if it is time and the one before is written. What a message to the
-    /// user says is wrong with that one.
+    /// Begins to write one if it is time and the one before is written.
     pub fn observe(
         &mut self,
         progress: &Progress,
         tracer: &mut dyn Tracer,
-    ) -> Result<Option<String>, TraceError> {
-        if self.last.elapsed() < self.every || self.is_writing() {
-            return Ok(None);
+        reporter: &Reporter,
+    ) -> Result<(), TraceError> {
+        let is_writing = self.writer.as_ref().is_some_and(|writer| !writer.is_finished());
+        let Some(path) = self.path.clone().filter(|_| !is_writing) else { return Ok(()) };
+        if self.last.elapsed() < self.every {
+            return Ok(());
         }
-        let wrong = self.finish();
+        self.finish(reporter);
         self.last = Instant::now();
         let next_look = std::iter::zip(self.target, progress.next_look).next();
         let spent = Spent {
@@ -45,24 +57,21 @@ impl Checkpoints {
             seconds: progress.elapsed.as_secs_f64(),
             next_look: next_look.map(|(target, samples)| NextLook { target, samples }),
         };
-        let (film, origin, path) = (tracer.film()?, self.origin.clone(), self.path.clone());
+        let (film, origin) = (tracer.film()?, self.origin.clone());
         self.writer = Some(std::thread::spawn(move || write(&path, origin, spent, &film)));
-        Ok(wrong)
+        Ok(())
     }
 
-    fn is_writing(&self) -> bool {
-        self.writer.as_ref().is_some_and(|writer| !writer.is_finished())
-    }
-
-    /// Waits for the one that is being written. What a message to the user says is wrong with it.
-    pub fn finish(&mut self) -> Option<String> {
-        let ended = self.writer.take()?.join();
-        let Err(error) = ended.unwrap_or_else(|panic| std::panic::resume_unwind(panic)) else {
-            self.written = true;
-            return None;
-        };
-        let before = if self.written { "the one before stays" } else { "there is none yet" };
-        Some(format!("warning: no checkpoint, {before}: {error}"))
+    /// Waits for the one that is being written, and says what is wrong with it.
+    pub fn finish(&mut self, reporter: &Reporter) {
+        let Some(writer) = self.writer.take() else { return };
+        match writer.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
+            Ok(()) => self.written = true,
+            Err(error) => {
+                let before = if self.written { "the one before stays" } else { "there is none" };
+                reporter.message(&format!("warning: no checkpoint, {before}: {error}"));
+            }
+        }
     }
 }
 

@@ -84,14 +84,14 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::args::{Cli, Command, RenderArgs};
-    use super::super::render::Finished;
+    use super::super::render_report::Finished;
     use super::super::{DONE, FAILED, INTERRUPTED};
     use super::{lines, quoted, records};
     use crate::bound::sample_scale;
     use crate::estimate::summarize;
-    use crate::film::{Film, SampleRanges};
+    use crate::film::{Film, Identity, SampleRanges};
     use crate::render::{Outcome, Stop};
-    use crate::report::{Picture, PictureHeader, write_exr};
+    use crate::report::{Origin, PictureHeader, Sums, write_exr};
     use crate::scene::{Camera, ImageSize, Radiance, RenderSettings, Scene, Sphere, Surface};
     use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger};
     use clap::Parser;
@@ -129,8 +129,14 @@ mod tests {
             summary: summarize(&film),
             film,
             ledger: Ledger { count: reasons.len() as u64, records: records.collect() },
-            outcome: Outcome { stop, elapsed: Duration::from_secs(1) },
-            tracer: Description { device: "a".into(), driver: "b".into(), software: true },
+            outcome: Outcome { stop, elapsed: Duration::from_secs(1), next_look: None },
+            origin: Origin {
+                scene_file: "s.toml".to_owned(),
+                identity: Identity::of(&scene, sample_scale(&scene)),
+                dark: true,
+                tracer: Description { device: "a".into(), driver: "b".into(), software: true },
+            },
+            target: None,
             log_error: None,
             scene,
         }
@@ -163,8 +169,8 @@ mod tests {
         let folder = tempfile::TempDir::new().expect("a temporary folder");
         let header = |reasons: &[InvalidReason]| {
             let (path, render) = (folder.path().join("a.exr"), finished(reasons, Stop::Done));
-            let provenance = render.provenance(&arguments("s.toml"));
-            write_exr(&path, &Picture::develop(&render.film, true), &provenance).expect("an EXR");
+            let sums = Sums::Compact(&render.film);
+            write_exr(&path, &render.picture(), sums, &render.provenance()).expect("an EXR");
             PictureHeader::read(&path).expect("candor's own file")
         };
         let clean = header(&[]);

@@ -17,22 +17,18 @@ pub(super) fn run(args: &MergeArgs) -> Result<u8, Refusal> {
     let parts = args.films.iter().map(|path| StoredFilm::open(path));
     let parts = parts.collect::<Result<Vec<_>, _>>()?;
     let samples = check(&parts)?;
-    let wishes = Wishes {
-        force: args.force,
-        no_state: args.no_state,
-        quiet: args.quiet,
-        exposure: args.exposure,
-    };
-    let outputs = Outputs::new(&args.output, None, wishes)?;
+    let outputs = Outputs::new(&args.output, None, Wishes::of(&args.write, args.quiet))?;
     let identity = &parts[0].provenance.origin.identity;
     outputs.check_films(Some(identity), &samples)?;
     memory::check_merge(identity.size)?;
     warn(args, &parts, &samples);
     let merged = Merged::of(&parts, args.quiet)?;
     let picture = Picture::develop(&merged.film, merged.provenance.origin.dark);
-    let files = outputs.write(&picture, &merged.film, &merged.provenance)?;
-    streams::results(&merged.report(args, &files))?;
-    Ok(DONE)
+    let (files, failed) = outputs.write(&picture, &merged.film, &merged.provenance)?;
+    if failed.is_none() || !files.is_empty() {
+        streams::results(&merged.report(args, &files))?;
+    }
+    failed.map_or(Ok(DONE), Err)
 }
 
 /// All samples, if every film is of the same picture and none holds a sample of another.
@@ -65,8 +61,7 @@ fn check(parts: &[StoredFilm]) -> Result<SampleRanges, Refusal> {
 fn gaps(samples: &SampleRanges) -> Option<String> {
     let end = samples.as_slice().last().map_or(0, |range| range.end);
     let missing = samples.missing(&(0..end));
-    let texts: Vec<_> = missing.iter().map(|gap| format!("{}..{}", gap.start, gap.end)).collect();
-    (!texts.is_empty()).then(|| texts.join(","))
+    (missing.count() > 0).then(|| missing.to_string())
 }
 
 /// Says what the user should know before trusting the whole.
@@ -125,9 +120,10 @@ impl Merged {
         }
         let mut origin = first.origin.clone();
         origin.tracer = tracer;
-        let summary = match origin.dark {
-            true => Summary::of_darkness(film.samples().count()),
-            false => summary(&film, &ledger, true),
+        let summary = if origin.dark {
+            Summary::of_darkness(film.samples().count())
+        } else {
+            summary(&film, &ledger, true)
         };
         let spent = Spent { ledger, seconds, next_look: None };
         let provenance = Provenance::new(origin, spent, &film, &summary);

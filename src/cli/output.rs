@@ -1,5 +1,6 @@
 //! Where the files of a render or a merge go, and what is already there.
 
+use super::args::WriteArgs;
 use super::{Refusal, refuse, streams};
 use crate::film::{Film, Identity, SampleRanges};
 use crate::report::{self, FileError, Picture, Provenance, Sums, There, look_at};
@@ -33,6 +34,13 @@ pub(super) struct Wishes {
     pub quiet: bool,
     /// Stops by which the PNG is brightened.
     pub exposure: f64,
+}
+
+impl Wishes {
+    pub fn of(args: &WriteArgs, quiet: bool) -> Self {
+        let &WriteArgs { exposure, no_state, force } = args;
+        Self { force, no_state, quiet, exposure }
+    }
 }
 
 impl Outputs {
@@ -125,39 +133,46 @@ impl Outputs {
         Ok(self.aside.clone())
     }
 
-    /// Writes all files and returns where they are. Where a film that holds more or other samples
-    /// than this render came to is in the way (it was interrupted, or its time was up), that one
-    /// is left alone and all files go beside, under the next free number.
+    /// Writes all files that can be written and returns where they are, and what is wrong with the
+    /// first of the others. Where a film that holds more or other samples than this render came
+    /// to is in the way (it was interrupted, or its time was up), that one is left alone and all
+    /// files go beside, under the next free number.
     pub fn write(
         &self,
         picture: &Picture,
         film: &Film,
         provenance: &Provenance,
-    ) -> Result<Vec<PathBuf>, Refusal> {
+    ) -> Result<(Vec<PathBuf>, Option<Refusal>), Refusal> {
         let better = self.in_the_way(Some(&provenance.origin.identity), film.samples())?;
         if let (Some((path, why)), false) = (&better, self.wishes.quiet) {
             streams::message(&format!("{} holds {why}, and stays as it is", path.display()));
         }
         let sums = if self.wishes.no_state { Sums::LeftOut } else { Sums::Compact(film) };
-        let mut written = Vec::new();
+        let (mut written, mut failed) = (Vec::new(), None);
         for (path, format) in &self.files {
             let path = match (&better, &self.aside) {
                 (None, _) => path.clone(),
                 (Some(_), Some(aside)) if Some(path.as_path()) == self.state() => aside.clone(),
                 (Some(_), _) => beside(path)?,
             };
-            match format {
-                Format::Png => report::write_png(&path, picture, self.wishes.exposure)?,
+            let result = match format {
+                Format::Png => {
+                    report::write_png(&path, picture, self.wishes.exposure).map_err(Refusal::from)
+                }
                 Format::Exr => report::write_exr(&path, picture, sums, provenance)
-                    .map_err(|error| rescued(error, &path, picture, film, provenance))?,
+                    .map_err(|error| rescued(error, &path, picture, film, provenance)),
+            };
+            match result {
+                Ok(()) => written.push(path),
+                Err(refusal) => failed = failed.or(Some(refusal)),
             }
-            written.push(path);
         }
-        if let Some(aside) = self.aside.as_ref().filter(|aside| !written.contains(aside)) {
+        let aside = self.aside.as_ref().filter(|aside| !written.contains(aside));
+        if let Some(aside) = aside.filter(|_| failed.is_none()) {
             // Nothing is there where the render was too short for a checkpoint.
             let _ = std::fs::remove_file(aside);
         }
-        Ok(written)
+        Ok((written, failed))
     }
 
     /// A film in the way, and what it holds: more samples than these, or others of the same

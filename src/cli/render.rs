@@ -27,25 +27,25 @@ pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     job.check_films(&outputs)?;
     let finished = if job.scene.has_lights() { job.trace(&mut outputs)? } else { job.darkness()? };
     interrupt::writing_begins();
-    let files = outputs.write(&finished.picture(), &finished.film, &finished.provenance())?;
-    streams::results(&finished.report(args, &files))?;
-    if let Some(error) = finished.log_error {
-        return Err(error.into());
+    let (files, failed) =
+        outputs.write(&finished.picture(), &finished.film, &finished.provenance())?;
+    if failed.is_none() || !files.is_empty() {
+        streams::results(&finished.report(args, &files))?;
     }
-    if args.strict && finished.ledger.count > 0 {
-        let count = finished.ledger.count;
-        streams::message(&format!("error: {count} samples were invalid, and --strict allows none"));
+    let (code, invalid) = (finished.code(args), finished.ledger.count);
+    if let Some(refusal) = failed.or(finished.log_error.map(Refusal::from)) {
+        return Err(refusal);
     }
-    Ok(finished.code(args))
+    if args.strict && invalid > 0 {
+        streams::message(&format!(
+            "error: {invalid} samples were invalid, and --strict allows none"
+        ));
+    }
+    Ok(code)
 }
 
 fn outputs(args: &RenderArgs) -> Result<Outputs, Refusal> {
-    let wishes = Wishes {
-        force: args.force,
-        no_state: args.no_state,
-        quiet: args.common.quiet,
-        exposure: args.exposure,
-    };
+    let wishes = Wishes::of(&args.write, args.common.quiet);
     let outputs = Outputs::new(&args.output, args.scene.file_stem(), wishes)?;
     match args.log.as_ref().filter(|log| outputs.contains(log)) {
         Some(log) => refuse(format_args!("{}: named both as output and as log", log.display())),
@@ -86,8 +86,7 @@ impl<'a> Job<'a> {
             time: args.time,
             target_error: args.target_error,
         };
-        let mut planned = there;
-        plan.ranges.iter().try_for_each(|range| planned.insert(range.clone()))?;
+        let planned = there.union(&plan.ranges)?;
         Ok(Self { args, scene, source, begun, plan, planned })
     }
 
@@ -135,21 +134,17 @@ impl<'a> Job<'a> {
         if let Some((film, begun)) = earlier.zip(self.begun.as_ref()) {
             tracer.restore(&film, &begun.provenance.spent.ledger)?;
         }
-        let mut checkpoints = outputs.checkpoint(self.begun.is_some())?.map(|path| {
-            Checkpoints::new(&path, origin.clone(), args.checkpoint_every, args.target_error)
-        });
+        let path = outputs.checkpoint(self.begun.is_some())?;
+        let mut checkpoints = Checkpoints::new(path, &origin, args);
         let audience = if log.is_kept() { Audience::Log } else { reporter.audience() };
         let outcome =
             render(tracer.as_mut(), &self.plan, interrupt, audience, &mut |at, tracer| {
                 log.observe(at);
                 reporter.observe(at);
-                let wrong = checkpoints.as_mut().map(|all| all.observe(at, tracer)).transpose()?;
-                wrong.flatten().iter().for_each(|wrong| reporter.message(wrong));
-                Ok(())
+                checkpoints.observe(at, tracer, &reporter)
             });
         reporter.finish();
-        let wrong = checkpoints.as_mut().and_then(Checkpoints::finish);
-        wrong.iter().for_each(|wrong| reporter.message(wrong));
+        checkpoints.finish(&reporter);
         let outcome = outcome?;
         let (film, ledger) = (tracer.film()?, tracer.ledger()?);
         let summary = summary(&film, &ledger, outcome.stop != Stop::Interrupted);
@@ -168,13 +163,13 @@ impl<'a> Job<'a> {
             units::bytes(needed),
         ));
         let Some(film) = &self.begun else { return };
-        let (file, there) = (film.path().display(), &film.provenance);
+        let (path, there) = (film.path().display(), &film.provenance);
         let time = units::time(there.spent.seconds);
-        reporter.message(&format!("goes on from {file}: samples {}, {time}", there.samples));
+        reporter.message(&format!("goes on from {path}: samples {}, {time}", there.samples));
         let made = &there.origin.tracer;
         if made.and(tracer) != *made {
             reporter.message(&format!(
-                "warning: {file} was made on {} ({}); its samples may differ from this device's \
+                "warning: {path} was made on {} ({}); its samples may differ from this device's \
                  by rounding",
                 made.device, made.driver
             ));

@@ -7,7 +7,7 @@ use super::{
     DONE, FAILED, INTERRUPTED, Refusal, choose, hard, interrupt, memory, refuse, setup, streams,
 };
 use crate::cpu::CpuTracer;
-use crate::film::Film;
+use crate::film::{Film, SampleRanges};
 use crate::range::Arithmetic;
 use crate::render::{Audience, Begun, Plan, Stop, render};
 use crate::scene::Scene;
@@ -86,7 +86,7 @@ impl Run<'_> {
     ) -> Result<Option<Traced>, Refusal> {
         let plan = Plan {
             begun: Begun::default(),
-            ranges: vec![0..self.spp],
+            ranges: SampleRanges::default().missing(&(0..self.spp)),
             time: None,
             target_error: None,
         };

@@ -86,7 +86,7 @@ impl SampleRanges {
 
     /// The samples of `wanted` that are not there, ascending.
     #[must_use]
-    pub fn missing(&self, wanted: &Range<u64>) -> Vec<Range<u64>> {
+    pub fn missing(&self, wanted: &Range<u64>) -> Self {
         let mut missing = Vec::new();
         let mut from = wanted.start;
         for there in self.0.iter().filter(|r| r.end > wanted.start && r.start < wanted.end) {
@@ -95,13 +95,13 @@ impl SampleRanges {
         }
         missing.push(from..wanted.end);
         missing.retain(|range| range.start < range.end);
-        missing
+        Self(missing)
     }
 
     /// Whether every sample of the other is there.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
-        other.0.iter().all(|range| self.missing(range).is_empty())
+        other.0.iter().all(|range| self.missing(range).count() == 0)
     }
 
     /// Samples that both hold: one run of them, if there are any.

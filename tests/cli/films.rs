@@ -18,7 +18,7 @@ fn every_output_is_written_and_nothing_else() {
     let folder = Folder::new();
     let arguments = "render scene.toml --device cpu --quiet -o a.exr --output b.PNG -o c.EXR";
     let results = folder.candor(arguments).silently_done();
-    assert!(results.starts_with("wrote a.exr\nwrote b.PNG\nwrote c.EXR\ndone: "), "{results}");
+    assert!(results.starts_with("wrote a.exr\nwrote c.EXR\nwrote b.PNG\ndone: "), "{results}");
     // No temporary file is left either.
     assert_eq!(folder.files(), ["a.exr", "b.PNG", "c.EXR"]);
 }

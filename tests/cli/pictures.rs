@@ -20,10 +20,12 @@ impl Film {
         let image = read_first_flat_layer_from_file(path).expect("the film can be read");
         let layer = image.layer_data;
         let channels = layer.channel_data.list.into_iter().map(|channel| {
-            let FlatSamples::F32(samples) = channel.sample_data else {
-                panic!("{} is not f32", channel.name)
+            let bits = match channel.sample_data {
+                FlatSamples::F32(samples) => samples.into_iter().map(f32::to_bits).collect(),
+                FlatSamples::U32(samples) => samples,
+                FlatSamples::F16(_) => panic!("{} is half", channel.name),
             };
-            (channel.name.to_string(), samples.into_iter().map(f32::to_bits).collect())
+            (channel.name.to_string(), bits)
         });
         let texts = layer.attributes.other.into_iter().filter_map(|(name, value)| match value {
             AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
@@ -38,14 +40,20 @@ impl Film {
     }
 }
 
+/// The channels of the picture, without the sums.
+const PICTURE: [&str; 4] = ["B", "G", "R", "stderr.L"];
+
 #[test]
 fn a_film_has_the_mean_and_its_error() {
     let folder = Folder::new();
     folder.candor("render scene.toml --device cpu --quiet").silently_done();
     let film = Film::read(&folder.path("scene.exr"));
     assert_eq!(film.size, (8, 6));
-    assert_eq!(film.channels.keys().collect::<Vec<_>>(), ["B", "G", "R", "stderr.L"]);
-    for (name, bits) in &film.channels {
+    let (sums, rest): (Vec<_>, Vec<_>) =
+        film.channels.iter().partition(|(name, _)| name.starts_with("sum."));
+    assert_eq!(sums.len(), 3 * 3 + 4);
+    assert_eq!(rest.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), PICTURE);
+    for (name, bits) in rest {
         assert_eq!(bits.len(), 8 * 6, "{name}");
         let values = || bits.iter().map(|&bits| f32::from_bits(bits));
         assert!(values().all(|x| x >= 0.0), "{name}");
@@ -119,7 +127,7 @@ fn a_seed_gives_the_same_bits_again() {
 fn sample_ranges_are_different_samples() {
     let folder = Folder::new();
     let render = |arguments: &str| {
-        let arguments = format!("render scene.toml --device cpu --quiet -o a.exr {arguments}");
+        let arguments = format!("render scene.toml --device cpu --quiet --force -o a.exr {arguments}");
         folder.candor(&arguments).silently_done();
         Film::read(&folder.path("a.exr")).channels
     };
@@ -164,7 +172,7 @@ fn a_scene_without_lights_is_exactly_black() {
         assert_eq!((&json["spp"], &json["unproven_pixels"]), (&1_000_000_000.into(), &0.into()));
         let film = Film::read(&folder.path("dark.exr"));
         assert_eq!(film.attributes["candor.spp"], "1000000000");
-        assert_eq!(film.channels.len(), 4);
+        assert_eq!(film.channels.len(), 4 + 3 * 3 + 4);
         assert!(film.channels.values().flatten().all(|&bits| bits == 0));
         assert!(png(&folder, "dark.png").iter().all(|&byte| byte == 0));
     }

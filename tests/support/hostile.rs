@@ -6,7 +6,7 @@
 use candor::cpu::{PreparedScene, SampleKey, trace};
 use candor::effects::Effects;
 use candor::kernel::{Kernel, pack, validate};
-use candor::report::PictureHeader;
+use candor::report::{PictureHeader, StoredFilm};
 use candor::scene::{Estimator, ImageSize, Scene, SceneFileError, load, parse};
 use candor::viewpoint::Viewpoint;
 use candor::{bound, estimate};
@@ -141,6 +141,21 @@ fn check_samples(scene: Scene) {
     }
 }
 
+/// Reads the file as a film, if it is one: what comes back are the sums that its checksum is of.
+fn check_film(path: &Path) {
+    let read = StoredFilm::open(path).and_then(|stored| Ok((stored.read()?, stored.provenance)));
+    match read {
+        Ok((film, provenance)) => {
+            let identity = provenance.origin.identity;
+            film.check_fits(identity.size, identity.scale).expect("the header's");
+            assert_eq!(*film.samples(), provenance.samples);
+        }
+        Err(error) => {
+            refused(&error.to_string());
+        }
+    }
+}
+
 /// Pictures of more pixels are not read: the program asks for memory first.
 const MOST_PIXELS: u32 = 1 << 14;
 
@@ -155,6 +170,7 @@ pub fn check_picture(bytes: &[u8], scratch: &Path) -> bool {
         Ok(_) => return false,
         Err(error) => return refused(&error.to_string()),
     };
+    check_film(scratch);
     let size = header.size;
     let picture = match header.read_pixels() {
         Ok(picture) => picture,

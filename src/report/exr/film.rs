@@ -1,6 +1,6 @@
 //! Reads the film of an EXR file: the exact sums, and where they come from.
 
-use super::header::required;
+use super::header::{self, required, text};
 use super::{Origin, Provenance, SUMS};
 use crate::film::{Film, PixelWords};
 use crate::report::FileError;
@@ -38,7 +38,7 @@ impl StoredFilm {
         let [part] = reader.headers() else {
             return Err(fail("has several parts; a film has one".to_owned()));
         };
-        if super::header::text(part, "numbers").is_none() {
+        if text(part, "numbers").is_none() {
             return Err(fail(
                 "is no film of this program: its header has no candor.numbers".into(),
             ));
@@ -47,6 +47,11 @@ impl StoredFilm {
             let reason = "holds no exact sums (it was written with --no-state, or another program \
                           wrote it); nothing can be added to it";
             return Err(fail(reason.to_owned()));
+        }
+        let (found, stated) =
+            (header::checksum(&part.own_attributes), text(part, "headerChecksum"));
+        if stated.and_then(|text| text.parse().ok()) != Some(found) {
+            return Err(fail("is torn: its header does not have the checksum that it says".into()));
         }
         let provenance = Provenance::read(part).map_err(fail)?;
         let checksum = required(part, "checksum").map_err(fail)?;

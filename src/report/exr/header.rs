@@ -1,13 +1,13 @@
 //! Where a film comes from, as attributes of its file's header, written and read.
 
-use super::PREFIX;
+use super::{HEADER_CHECKSUM, PREFIX};
 use crate::estimate::Summary;
 use crate::film::{Film, Identity, SampleRanges, SampleScale};
 use crate::report::printable;
 use crate::scene::{Estimator, ImageSize};
 use crate::tracer::{Description, InvalidReason, InvalidSample, Ledger};
 use exr::meta::attribute::{AttributeValue, Text};
-use exr::meta::header::Header;
+use exr::meta::header::{Header, LayerAttributes};
 use exr::prelude::Vec2;
 use std::fmt;
 use std::str::FromStr;
@@ -177,6 +177,27 @@ impl FromStr for NextLook {
         });
         look.ok_or_else(|| "expected SAMPLES for ERROR".to_owned())
     }
+}
+
+/// CRC-32 of candor's attributes but the checksum itself: of each, in the order of their names,
+/// its name, an equals sign, its text, both in Latin-1, and a line feed.
+pub(super) fn checksum(own: &LayerAttributes) -> u32 {
+    let ours = own.other.iter().filter_map(|(name, value)| match value {
+        AttributeValue::Text(text) => Some((name.as_slice(), text.as_slice())),
+        _ => None,
+    });
+    let mut ours: Vec<_> = ours
+        .filter(|(name, _)| name.starts_with(PREFIX.as_bytes()))
+        .filter(|&(name, _)| name != HEADER_CHECKSUM.as_bytes())
+        .collect();
+    ours.sort_unstable();
+    let mut hasher = crc32fast::Hasher::new();
+    for (name, text) in ours {
+        for part in [name, b"=", text, b"\n"] {
+            hasher.update(part);
+        }
+    }
+    hasher.finalize()
 }
 
 /// The text of an attribute of candor's.

@@ -21,6 +21,10 @@ use exr::prelude::Vec2;
 /// Prefix of candor's header attributes.
 const PREFIX: &str = "candor.";
 
+/// Attribute of the checksum of the others: a film with another list of samples, or of another
+/// seed, would be as wrong as one with other sums.
+const HEADER_CHECKSUM: &str = "candor.headerChecksum";
+
 /// Channel of the standard error of the mean luminance.
 const STANDARD_ERROR: &str = "stderr.L";
 

@@ -1,6 +1,7 @@
 //! Writes a picture, and the film that it shows, as an EXR file.
 
-use super::{PREFIX, Provenance, REC_709, STANDARD_ERROR, SUMS};
+use super::header::checksum;
+use super::{HEADER_CHECKSUM, PREFIX, Provenance, REC_709, STANDARD_ERROR, SUMS};
 use crate::film::{Film, WORDS};
 use crate::report::{FileError, Picture, replace};
 use exr::block::writer::ChunksWriter;
@@ -102,11 +103,14 @@ fn header(
         software_name: Some(Text::from(concat!("candor ", env!("CARGO_PKG_VERSION")))),
         ..LayerAttributes::default()
     };
-    let checksum = sums.film().map(|film| ("checksum", film.checksum().to_string()));
-    for (name, value) in provenance.attributes().into_iter().chain(checksum) {
+    let mut attributes = provenance.attributes();
+    attributes.extend(sums.film().map(|film| ("checksum", film.checksum().to_string())));
+    for (name, value) in attributes {
         let name = Text::from(format!("{PREFIX}{name}").as_str());
         own.other.insert(name, AttributeValue::Text(latin(&value)));
     }
+    let checksum = AttributeValue::Text(Text::from(checksum(&own).to_string().as_str()));
+    own.other.insert(Text::from(HEADER_CHECKSUM), checksum);
     let shared =
         ImageAttributes { chromaticities: Some(REC_709), ..ImageAttributes::with_size(size) };
     Header::new(Text::default(), size, described.collect())
