@@ -180,7 +180,7 @@ impl FromStr for NextLook {
 }
 
 /// CRC-32 of candor's attributes but the checksum itself: of each, in the order of their names,
-/// its name, an equals sign, its text, both in Latin-1, and a line feed.
+/// its name, an equals sign, its text and a line feed.
 pub(super) fn checksum(own: &LayerAttributes) -> u32 {
     let ours = own.other.iter().filter_map(|(name, value)| match value {
         AttributeValue::Text(text) => Some((name.as_slice(), text.as_slice())),
@@ -204,7 +204,7 @@ pub(super) fn checksum(own: &LayerAttributes) -> u32 {
 pub(super) fn text(part: &Header, name: &str) -> Option<String> {
     let name = Text::new_or_none(format!("{PREFIX}{name}"))?;
     match part.own_attributes.other.get(&name)? {
-        AttributeValue::Text(text) => Some(printable(&text.to_string())),
+        AttributeValue::Text(text) => Some(printable(&String::from_utf8_lossy(text.as_slice()))),
         _ => None,
     }
 }

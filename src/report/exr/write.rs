@@ -107,7 +107,7 @@ fn header(
     attributes.extend(sums.film().map(|film| ("checksum", film.checksum().to_string())));
     for (name, value) in attributes {
         let name = Text::from(format!("{PREFIX}{name}").as_str());
-        own.other.insert(name, AttributeValue::Text(latin(&value)));
+        own.other.insert(name, AttributeValue::Text(utf8(&value)));
     }
     let checksum = AttributeValue::Text(Text::from(checksum(&own).to_string().as_str()));
     own.other.insert(Text::from(HEADER_CHECKSUM), checksum);
@@ -119,10 +119,10 @@ fn header(
         .with_attributes(own)
 }
 
-/// Header texts are Latin-1; other characters of a file or device name become '?'.
-fn latin(text: &str) -> Text {
-    let shown: String = text.chars().map(|c| if c as u32 <= 0xff { c } else { '?' }).collect();
-    Text::new_or_none(&shown).unwrap_or_else(|| Text::from("?"))
+/// Header texts are UTF-8, as OpenEXR's own library takes them. The crate's would be Latin-1, which
+/// others cannot read.
+fn utf8(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
 }
 
 /// The rows of the file, made when they are written: all of them at once would take as much
