@@ -1,19 +1,20 @@
 //! `candor render`: from a scene file to pictures.
 
 use super::args::{DeviceChoice, EstimatorChoice, RenderArgs};
+use super::endure::{self, Traced};
 use super::output::Outputs;
 use super::progress::Reporter;
 use super::{
-    DONE, FAILED, INTERRUPTED, Refusal, choose, interrupt, memory, pilot, refuse, setup, streams,
-    units,
+    DONE, FAILED, INTERRUPTED, REFUSED, Refusal, choose, interrupt, memory, pilot, refuse, setup,
+    streams, units,
 };
 use crate::bound::sample_scale;
 use crate::estimate::{FIRST_LOOK, Summary, is_look, summarize};
 use crate::film::{Film, SampleRanges};
-use crate::render::{Audience, Outcome, Plan, Progress, Stop, render};
+use crate::render::{Audience, Outcome, Plan, Progress, Stop};
 use crate::report::{ErrorLog, FileError, Picture, Provenance};
 use crate::scene::{MAX_SPP, Scene, Source};
-use crate::tracer::{Description, Ledger};
+use crate::tracer::{Description, Ledger, Tracer};
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
@@ -112,7 +113,7 @@ fn trace(
     let interrupt = interrupt::watch()?;
     let chosen = choose::choose(&common.device, common.threads)?;
     setup::check_range(&scene, source, &[chosen.arithmetic()])?;
-    let needed = memory::needed(&scene, chosen.on_processor());
+    let needed = memory::needed(&scene, chosen.films());
     memory::check(scene.size(), needed)?;
     let mut log = Log::create(args)?;
     let mut reporter = Reporter::new(common.quiet, scene.size().pixels(), &plan);
@@ -124,7 +125,7 @@ fn trace(
         scene = pilot::choose_estimator(scene, &chosen, interrupt, &reporter)?;
         plan.time = plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
     }
-    let mut tracer = chosen.tracer(&scene)?;
+    let mut tracer = chosen.enduring(&scene, reporter.messenger())?;
     let description = tracer.describe();
     reporter.message(&format!(
         "{}x{} pixels on {} ({}), {} of memory",
@@ -135,18 +136,21 @@ fn trace(
         units::bytes(needed),
     ));
     let audience = if log.file.is_some() { Audience::Log } else { reporter.audience() };
-    let outcome = render(tracer.as_mut(), &plan, interrupt, audience, &mut |progress| {
+    let traced = endure::trace(&mut tracer, &plan, interrupt, audience, &mut |progress| {
         log.observe(&progress);
         reporter.observe(progress);
     });
     reporter.finish();
-    let outcome = outcome?;
-    let film = tracer.film()?;
-    let ledger = tracer.ledger()?;
+    let Traced { outcome, film, ledger, failure } = traced?;
+    drop(tracer);
+    if let Some(error) = failure {
+        streams::message(&format!("error: {error}"));
+    }
     let mut summary = summarize(&film);
     // Invalid samples add 0 where they should not, and an interruption is no look that the
     // confidence is spread over: in neither case does the bound hold.
-    let planned = outcome.stop != Stop::Interrupted || is_look(summary.samples);
+    let cut_short = matches!(outcome.stop, Stop::Interrupted | Stop::Failed);
+    let planned = !cut_short || is_look(summary.samples);
     if ledger.count > 0 || !planned {
         summary.error_bound = None;
     }
@@ -157,8 +161,7 @@ fn trace(
 
 /// A scene without lights is a picture of exact zeros; nothing needs to be traced.
 fn darkness(args: &RenderArgs, scene: Scene, plan: &Plan) -> Result<Finished, Refusal> {
-    let on_host = true;
-    memory::check(scene.size(), memory::needed(&scene, on_host))?;
+    memory::check(scene.size(), memory::needed(&scene, 1))?;
     let mut samples = SampleRanges::default();
     // A target is reached at the first look.
     let end = plan.target_error.map_or(plan.samples.end, |_| plan.samples.end.min(FIRST_LOOK));
@@ -187,6 +190,7 @@ impl Finished {
         let missed = self.target_reached(args.target_error) == Some(false);
         match self.outcome.stop {
             Stop::Interrupted => INTERRUPTED,
+            Stop::Failed => REFUSED,
             _ if missed || (args.strict && self.ledger.count > 0) => FAILED,
             _ => DONE,
         }

@@ -83,6 +83,7 @@ impl Finished {
             Stop::Done | Stop::Target => "done",
             Stop::Time => "time is up",
             Stop::Interrupted => "interrupted",
+            Stop::Failed => "failed",
         };
         match (target, self.target_reached(target)) {
             (Some(target), Some(true)) => format!("{} reached", units::percent(target)),
@@ -107,8 +108,10 @@ impl Finished {
         if self.ledger.count > 0 {
             return "samples were invalid".to_owned();
         }
-        if self.outcome.stop == Stop::Interrupted {
-            return "the render was interrupted".to_owned();
+        match self.outcome.stop {
+            Stop::Interrupted => return "the render was interrupted".to_owned(),
+            Stop::Failed => return "the render failed".to_owned(),
+            Stop::Done | Stop::Target | Stop::Time => {}
         }
         let largest = f64::from(self.film.scale().bound()) / self.summary.luminance;
         format!("one sample may be {largest:.0e} times the mean, so much may not be found yet")

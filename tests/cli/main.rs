@@ -9,6 +9,8 @@ mod diff;
 mod explain;
 mod films;
 mod hostile;
+#[cfg(target_os = "linux")]
+mod lossy;
 mod pictures;
 mod replay;
 #[cfg(unix)]
