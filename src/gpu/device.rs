@@ -209,6 +209,13 @@ impl Gpu {
         })
     }
 
+    /// What it means that a buffer cannot be mapped, which nothing but a lost device explains:
+    /// why it is lost, or `sign` where that is not known.
+    pub(super) fn unmapped(&self, sign: String) -> TraceError {
+        let _ = poll(&self.device, wgpu::PollType::Poll);
+        self.check().err().unwrap_or(TraceError::DeviceLost(sign))
+    }
+
     fn trouble(&self) -> MutexGuard<'_, Trouble> {
         self.trouble.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,7 +1,8 @@
 /* A Vulkan driver that loses its device. It hands everything on to the driver that LOSSY_DRIVER
  * names, but the calls of the function LOSSY_CALL, counted over all devices, report from number
  * LOSSY_FIRST on LOSSY_TIMES times that the device is lost. A lost device stays lost: until the
- * next one is made, everything that may report a loss does. */
+ * next one is made, everything that may report a loss does. With LOSSY_GONE there is no next one:
+ * whoever asks for devices after a loss finds none. */
 
 #include <dlfcn.h>
 #include <stdint.h>
@@ -65,6 +66,13 @@ static Result create(void *physical, const void *info, const void *allocator, vo
     return real_create(physical, info, allocator, device);
 }
 
+static Result (*real_enumerate)(void *, uint32_t *, void **);
+static Result enumerate(void *instance, uint32_t *count, void **devices) {
+    if (!lost || !getenv("LOSSY_GONE")) return real_enumerate(instance, count, devices);
+    *count = 0;
+    return 0;
+}
+
 static Function instead(const char *name, Function real);
 
 static GetFunction real_device_function;
@@ -80,6 +88,7 @@ static Function instead(const char *name, Function real) {
         return (Function)ours; \
     }
     REPLACE("vkGetDeviceProcAddr", device_function)
+    REPLACE("vkEnumeratePhysicalDevices", enumerate)
     REPLACE("vkCreateDevice", create)
     REPLACE("vkQueueSubmit", submit)
     REPLACE("vkQueueWaitIdle", queue_idle)
