@@ -29,12 +29,12 @@ pub(super) fn trace(
     observe: &mut dyn FnMut(Progress),
 ) -> Result<Traced, TraceError> {
     let started = Instant::now();
-    let traced = render(tracer, plan, interrupt, audience, observe).and_then(|outcome| {
+    let rendered = render(tracer, plan, interrupt, audience, observe).and_then(|outcome| {
         Ok(Traced { outcome, film: tracer.film()?, ledger: tracer.ledger()?, failure: None })
     });
-    let error = match traced {
+    let error = match rendered {
         Err(error) => error,
-        traced => return traced,
+        whole => return whole,
     };
     match tracer.last_whole() {
         Some((film, ledger)) if film.samples().count() > 0 => {

@@ -136,12 +136,12 @@ fn trace(
         units::bytes(needed),
     ));
     let audience = if log.file.is_some() { Audience::Log } else { reporter.audience() };
-    let traced = endure::trace(&mut tracer, &plan, interrupt, audience, &mut |progress| {
+    let rendered = endure::trace(&mut tracer, &plan, interrupt, audience, &mut |progress| {
         log.observe(&progress);
         reporter.observe(progress);
     });
     reporter.finish();
-    let Traced { outcome, film, ledger, failure } = traced?;
+    let Traced { outcome, film, ledger, failure } = rendered?;
     drop(tracer);
     if let Some(error) = failure {
         streams::message(&format!("error: {error}"));

@@ -165,7 +165,7 @@ impl Gpu {
     /// for lost.
     pub fn run(&self, encoder: wgpu::CommandEncoder) -> Result<(), TraceError> {
         let submission = self.queue.submit([encoder.finish()]);
-        let waited = wait(&self.device, submission, self.patience);
+        let waited = wait(&self.device, &submission, self.patience);
         self.check()?;
         if waited? {
             return Ok(());

@@ -45,7 +45,7 @@ pub(super) fn poll(
 /// If the device is lost.
 pub(super) fn wait(
     device: &wgpu::Device,
-    submission: wgpu::SubmissionIndex,
+    submission: &wgpu::SubmissionIndex,
     patience: Duration,
 ) -> Result<bool, TraceError> {
     let mut left = patience;

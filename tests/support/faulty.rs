@@ -75,15 +75,15 @@ impl Faulty {
         mistake: Mistake,
     ) -> Result<Self, TraceError> {
         let is_first = faults.borrow().calls.is_empty();
-        let mut faulty = Self {
+        let mut tracer = Self {
             twin: twin(scene),
             ledger: Ledger::default(),
             faults: Rc::clone(faults),
             mistake,
             is_first,
         };
-        faulty.call(Call::Make)?;
-        Ok(faulty)
+        tracer.call(Call::Make)?;
+        Ok(tracer)
     }
 
     fn call(&mut self, call: Call) -> Result<(), TraceError> {
