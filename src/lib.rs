@@ -4,7 +4,7 @@
 //!
 //! [`scene`] → [`viewpoint`] → [`hierarchy`], [`light_tree`] → [`effects`], [`bound`], [`range`] →
 //! [`film`] → [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) →
-//! [`estimate`] → [`watch`], [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`explain`] → [`report`] →
+//! [`enduring`] → [`estimate`] → [`watch`], [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`explain`] → [`report`] →
 //! [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
@@ -16,6 +16,7 @@ pub mod cli;
 pub mod cost;
 pub mod cpu;
 pub mod effects;
+pub mod enduring;
 pub mod estimate;
 pub mod explain;
 pub mod film;

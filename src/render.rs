@@ -70,6 +70,8 @@ pub enum Stop {
     Time,
     /// Interrupted from outside.
     Interrupted,
+    /// The tracer failed, and there is what it had before; [`render`] itself returns the error.
+    Failed,
 }
 
 /// How far a render is.

@@ -3,6 +3,7 @@
 use super::args::DeviceChoice;
 use super::{Refusal, refuse};
 use crate::cpu::CpuTracer;
+use crate::enduring::{Enduring, Listener, Maker};
 use crate::gpu::{Adapter, Gpu, GpuTracer, adapters};
 use crate::range::Arithmetic;
 use crate::scene::Scene;
@@ -32,19 +33,38 @@ impl Chosen {
         })
     }
 
+    /// A tracer of the scene on this device that outlives the device; the same one is opened
+    /// again, as another would make other bits. The twin has no device to lose.
+    pub fn enduring<'a>(
+        &'a self,
+        scene: &'a Scene,
+        tell: Listener<'a>,
+    ) -> Result<Enduring<'a>, TraceError> {
+        let make: Maker<'a> = match self {
+            Self::Adapter(adapter) => Box::new(|losses| {
+                let gpu = if losses == 0 { Gpu::open(adapter) } else { open_again(adapter) }?;
+                Ok(Box::new(GpuTracer::new(scene, gpu)?.paced_for(losses)))
+            }),
+            Self::Twin(_) => Box::new(|_| self.tracer(scene)),
+        };
+        Enduring::new(make, tell)
+    }
+
+    /// Films of a picture that a render on it keeps in this machine's memory while it takes
+    /// another one from the tracer: the last whole state and the next, and a tracer's own where
+    /// it computes on the processor. The twin shares its own with the states that are taken.
+    pub fn films(&self) -> u64 {
+        match self {
+            Self::Adapter(adapter) if adapter.is_software() => 3,
+            Self::Adapter(_) | Self::Twin(_) => 2,
+        }
+    }
+
     /// What it computes in.
     pub fn arithmetic(&self) -> Arithmetic {
         match self {
             Self::Adapter(_) => Arithmetic::Single,
             Self::Twin(_) => Arithmetic::Double,
-        }
-    }
-
-    /// Whether it computes on this machine's processor.
-    pub fn on_processor(&self) -> bool {
-        match self {
-            Self::Adapter(adapter) => adapter.is_software(),
-            Self::Twin(_) => true,
         }
     }
 
@@ -83,6 +103,17 @@ pub(super) fn choose(
             )),
         },
         DeviceChoice::Named(name) => named(name),
+    }
+}
+
+fn open_again(adapter: &Adapter) -> Result<Gpu, TraceError> {
+    match adapter.again() {
+        Some(adapter) => Gpu::open(&adapter),
+        None => Err(TraceError::Device(format!(
+            "{} ({}) is not there any more",
+            adapter.name(),
+            adapter.driver()
+        ))),
     }
 }
 

@@ -17,10 +17,9 @@ const COMPARISON_BYTES: u64 = 3 * 16;
 /// 0.35 to 0.5 GB in all on their way to a device or to the twin.
 const SPHERE_BYTES: u64 = 400;
 
-/// Bytes of this machine's memory that a render of a scene takes. A tracer that runs on this
-/// machine's processor has its film here, besides the copy that is developed.
-pub(super) fn needed(scene: &Scene, on_processor: bool) -> u64 {
-    let films = if on_processor { 2 } else { 1 };
+/// Bytes of this machine's memory that a render of a scene takes, with so many films in it at a
+/// time.
+pub(super) fn needed(scene: &Scene, films: u64) -> u64 {
     let picture = films * BYTES_PER_PIXEL + PICTURE_BYTES;
     u64::from(scene.size().pixels()) * picture + scene.spheres().len() as u64 * SPHERE_BYTES
 }

@@ -8,6 +8,7 @@ mod cost;
 mod cost_table;
 mod devices;
 mod diff;
+mod endure;
 mod environment;
 mod explain;
 mod explain_table;
@@ -99,6 +100,9 @@ pub fn main() -> ExitCode {
 /// A panic is a mistake of ours; the user gets one line that says so, and where.
 fn report_panics() {
     std::panic::set_hook(Box::new(|panic| {
+        if crate::gpu::is_polling() {
+            return;
+        }
         let place = panic.location().map(ToString::to_string).unwrap_or_default();
         let cause = panic.payload_as_str().unwrap_or("unknown");
         streams::message(&format!("error: this is a mistake in candor, at {place}: {cause}"));

@@ -43,10 +43,18 @@ impl Reporter {
 
     /// A line that stays on the screen.
     pub fn message(&self, text: &str) {
+        self.messenger()(text);
+    }
+
+    /// Shows such lines by itself, also while this is in use elsewhere.
+    pub fn messenger(&self) -> Box<dyn Fn(&str)> {
         match &self.style {
-            Style::Quiet => {}
-            Style::Bar(bar) => bar.println(text),
-            Style::Lines { .. } => streams::message(text),
+            Style::Quiet => Box::new(|_| ()),
+            Style::Bar(bar) => {
+                let bar = bar.clone();
+                Box::new(move |text| bar.println(text))
+            }
+            Style::Lines { .. } => Box::new(streams::message),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::args::{DeviceChoice, EstimatorChoice, RenderArgs};
 use super::checkpoint::Checkpoints;
+use super::endure::{self, Traced};
 use super::log::Log;
 use super::output::{Outputs, Wishes};
 use super::progress::Reporter;
@@ -10,10 +11,10 @@ use super::{Refusal, choose, interrupt, memory, pilot, refuse, resume, setup, st
 use crate::bound::sample_scale;
 use crate::estimate::{FIRST_LOOK, Summary, is_look, summarize};
 use crate::film::{Film, Identity, SampleRanges};
-use crate::render::{Audience, Begun, Outcome, Plan, Stop, render};
+use crate::render::{Audience, Begun, Outcome, Plan, Stop};
 use crate::report::{Origin, StoredFilm};
 use crate::scene::{MAX_SPP, Scene, Source};
-use crate::tracer::{Description, Ledger};
+use crate::tracer::{Description, Ledger, Tracer};
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
@@ -114,7 +115,7 @@ impl<'a> Job<'a> {
         let interrupt = interrupt::watch()?;
         let chosen = choose::choose(&common.device, common.threads)?;
         setup::check_range(&self.scene, &self.source, &[chosen.arithmetic()])?;
-        let needed = memory::needed(&self.scene, chosen.on_processor());
+        let needed = memory::needed(&self.scene, chosen.films());
         memory::check(self.scene.size(), needed)?;
         let earlier = self.begun.as_ref().map(StoredFilm::read).transpose()?;
         let mut log = Log::create(args, self.plan.begun.samples)?;
@@ -128,7 +129,7 @@ impl<'a> Job<'a> {
             self.scene = pilot::choose_estimator(self.scene, &chosen, interrupt, &reporter)?;
             self.plan.time = self.plan.time.map(|limit| limit.saturating_sub(started.elapsed()));
         }
-        let mut tracer = chosen.tracer(&self.scene)?;
+        let mut tracer = chosen.enduring(&self.scene, reporter.messenger())?;
         let origin = self.origin(&tracer.describe());
         self.announce(&tracer.describe(), needed, &reporter);
         if let Some((film, begun)) = earlier.zip(self.begun.as_ref()) {
@@ -137,17 +138,21 @@ impl<'a> Job<'a> {
         let path = outputs.checkpoint(self.begun.is_some())?;
         let mut checkpoints = Checkpoints::new(path, &origin, args);
         let audience = if log.is_kept() { Audience::Log } else { reporter.audience() };
-        let outcome =
-            render(tracer.as_mut(), &self.plan, interrupt, audience, &mut |at, tracer| {
+        let rendered =
+            endure::trace(&mut tracer, &self.plan, interrupt, audience, &mut |at, tracer| {
                 log.observe(at);
                 reporter.observe(at);
                 checkpoints.observe(at, tracer, &reporter)
             });
         reporter.finish();
         checkpoints.finish(&reporter);
-        let outcome = outcome?;
-        let (film, ledger) = (tracer.film()?, tracer.ledger()?);
-        let summary = summary(&film, &ledger, outcome.stop != Stop::Interrupted);
+        let Traced { outcome, film, ledger, failure } = rendered?;
+        drop(tracer);
+        if let Some(error) = failure {
+            streams::message(&format!("error: {error}"));
+        }
+        let cut_short = matches!(outcome.stop, Stop::Interrupted | Stop::Failed);
+        let summary = summary(&film, &ledger, !cut_short);
         log.add(&summary, outcome.elapsed);
         let (scene, target) = (self.scene, args.target_error);
         Ok(Finished { scene, origin, film, ledger, summary, outcome, target, log_error: log.end() })
@@ -178,8 +183,7 @@ impl<'a> Job<'a> {
 
     /// A scene without lights is a picture of exact zeros; nothing needs to be traced.
     fn darkness(self) -> Result<Finished, Refusal> {
-        let on_host = true;
-        memory::check(self.scene.size(), memory::needed(&self.scene, on_host))?;
+        memory::check(self.scene.size(), memory::needed(&self.scene, 1))?;
         let args = self.args;
         let mut samples = self.planned.clone();
         if args.target_error.is_some() {

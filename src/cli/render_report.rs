@@ -1,7 +1,7 @@
 //! What is said of a render that is over.
 
 use super::args::RenderArgs;
-use super::{DONE, FAILED, INTERRUPTED, ledger, units};
+use super::{DONE, FAILED, INTERRUPTED, REFUSED, ledger, units};
 use crate::estimate::Summary;
 use crate::film::Film;
 use crate::render::{Outcome, Stop};
@@ -55,6 +55,7 @@ impl Finished {
         let missed = self.target_reached() == Some(false);
         match self.outcome.stop {
             Stop::Interrupted => INTERRUPTED,
+            Stop::Failed => REFUSED,
             _ if missed || (args.strict && self.ledger.count > 0) => FAILED,
             _ => DONE,
         }
@@ -129,6 +130,7 @@ impl Finished {
             Stop::Done | Stop::Target => "done",
             Stop::Time => "time is up",
             Stop::Interrupted => "interrupted",
+            Stop::Failed => "failed",
         };
         match (self.target, self.target_reached()) {
             (Some(target), Some(true)) => format!("{} reached", units::percent(target)),
@@ -156,8 +158,10 @@ impl Finished {
         if self.ledger.count > 0 {
             return "samples were invalid".to_owned();
         }
-        if self.outcome.stop == Stop::Interrupted {
-            return "the render was interrupted".to_owned();
+        match self.outcome.stop {
+            Stop::Interrupted => return "the render was interrupted".to_owned(),
+            Stop::Failed => return "the render failed".to_owned(),
+            Stop::Done | Stop::Target | Stop::Time => {}
         }
         let largest = f64::from(self.film.scale().bound()) / self.summary.luminance;
         format!("one sample may be {largest:.0e} times the mean, so much may not be found yet")

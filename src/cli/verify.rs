@@ -34,7 +34,7 @@ pub(super) fn run(args: &VerifyArgs) -> Result<u8, Refusal> {
     }
     let (chosen, device) = device(common)?;
     setup::check_range(&scene, &source, &[Arithmetic::Single, Arithmetic::Double])?;
-    memory::check(scene.size(), 3 * memory::needed(&scene, true))?;
+    memory::check(scene.size(), 3 * memory::needed(&scene, 2))?;
     let other_seed = scene.settings().with_seed(scene.settings().seed().wrapping_add(1));
     let other_scene = scene.clone().with_settings(other_seed);
     let run = Run { interrupt: interrupt::watch()?, quiet: common.quiet, spp };

@@ -135,7 +135,7 @@ fn read_piece(
     gpu.run(encoder)?;
     let mapped = staging
         .get_mapped_range(0..bytes)
-        .map_err(|error| TraceError::DeviceLost(format!("the film cannot be read: {error}")))?;
+        .map_err(|error| gpu.unmapped(format!("the film cannot be read: {error}")))?;
     target.copy_from_slice(&mapped);
     drop(mapped);
     staging.unmap();

@@ -1,7 +1,15 @@
 //! Adapters and devices, and what goes wrong with them, as errors and not as panics.
 
+use super::poll::{poll, wait};
 use crate::tracer::{Description, TraceError};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// A dispatch that takes longer will not end. It is planned to take a tenth of a second, a
+/// thousandth of this ([`super::pace`]). The rest is for the first one: nothing is known of the
+/// device yet, it may be one in software on a machine with other work, and some drivers compile
+/// the kernel only then.
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// Something that could trace: one adapter of the graphics API.
 #[derive(Debug, Clone)]
@@ -43,6 +51,13 @@ impl Adapter {
         }
     }
 
+    /// The same adapter, asked for anew: after a device was lost, nothing that the driver said
+    /// before need hold. `None` if it is not there any more.
+    #[must_use]
+    pub fn again(&self) -> Option<Self> {
+        adapters().into_iter().find(|adapter| adapter.info == self.info)
+    }
+
     /// What traces, for messages and film headers.
     #[must_use]
     pub fn describe(&self) -> Description {
@@ -79,6 +94,7 @@ pub fn adapters() -> Vec<Adapter> {
 /// What the device reported behind our back.
 #[derive(Debug, Default)]
 struct Trouble {
+    /// Why the device is lost; it stays so.
     lost: Option<String>,
     error: Option<wgpu::Error>,
 }
@@ -90,6 +106,7 @@ pub struct Gpu {
     queue: wgpu::Queue,
     description: Description,
     trouble: Arc<Mutex<Trouble>>,
+    patience: Duration,
 }
 
 impl Gpu {
@@ -114,7 +131,13 @@ impl Gpu {
         })?;
         let trouble = Arc::new(Mutex::new(Trouble::default()));
         watch(&device, &trouble);
-        Ok(Self { device, queue, description: adapter.describe(), trouble })
+        Ok(Self { device, queue, description: adapter.describe(), trouble, patience: PATIENCE })
+    }
+
+    /// The same device, given up for lost when a dispatch takes longer than `patience`.
+    #[must_use]
+    pub fn with_patience(self, patience: Duration) -> Self {
+        Self { patience, ..self }
     }
 
     /// The device.
@@ -138,35 +161,63 @@ impl Gpu {
     /// Submits commands and waits until the device has finished them.
     ///
     /// # Errors
-    /// If the device reports an error or is lost.
+    /// If the device reports an error or is lost; a device that does not finish them is given up
+    /// for lost.
     pub fn run(&self, encoder: wgpu::CommandEncoder) -> Result<(), TraceError> {
         let submission = self.queue.submit([encoder.finish()]);
-        let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: None };
-        let waited = self.device.poll(wait);
+        let waited = wait(&self.device, &submission, self.patience);
         self.check()?;
-        waited.map(drop).map_err(|error| TraceError::DeviceLost(error.to_string()))
+        if waited? {
+            return Ok(());
+        }
+        self.leak();
+        let reason = format!("it did not finish within {} s", self.patience.as_secs_f64());
+        self.trouble().lost = Some(reason.clone());
+        Err(TraceError::DeviceLost(reason))
     }
 
-    /// Whether anything went wrong since the last call.
+    /// Keeps the device open until the program ends. The destructor of a queue waits until it is
+    /// idle, so that of a queue that hangs may never return.
+    fn leak(&self) {
+        std::mem::forget((self.device.clone(), self.queue.clone()));
+    }
+
+    /// Whether anything went wrong since the last call, or the device is lost.
     ///
     /// # Errors
     /// What went wrong.
     pub fn check(&self) -> Result<(), TraceError> {
-        let mut trouble = self.trouble.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(reason) = trouble.lost.take() {
-            return Err(TraceError::DeviceLost(reason));
+        let error = {
+            let mut trouble = self.trouble();
+            if let Some(reason) = &trouble.lost {
+                return Err(TraceError::DeviceLost(reason.clone()));
+            }
+            let Some(error) = trouble.error.take() else { return Ok(()) };
+            error
+        };
+        // Nothing fits a device that was destroyed, and a poll is what tells of that.
+        let _ = poll(&self.device, wgpu::PollType::Poll);
+        if let Some(reason) = &self.trouble().lost {
+            return Err(TraceError::DeviceLost(reason.clone()));
         }
-        match trouble.error.take() {
-            None => Ok(()),
-            Some(wgpu::Error::OutOfMemory { .. }) => Err(TraceError::OutOfMemory(format!(
-                "{} could not hold the film",
-                self.description.device
-            ))),
-            Some(error) => Err(TraceError::Device(format!(
-                "{} reported an error: {error}",
-                self.description.device
-            ))),
-        }
+        let device = &self.description.device;
+        Err(match error {
+            wgpu::Error::OutOfMemory { .. } => {
+                TraceError::OutOfMemory(format!("{device} could not hold the film"))
+            }
+            error => TraceError::Device(format!("{device} reported an error: {error}")),
+        })
+    }
+
+    /// What it means that a buffer cannot be mapped, which nothing but a lost device explains:
+    /// why it is lost, or `sign` where that is not known.
+    pub(super) fn unmapped(&self, sign: String) -> TraceError {
+        let _ = poll(&self.device, wgpu::PollType::Poll);
+        self.check().err().unwrap_or(TraceError::DeviceLost(sign))
+    }
+
+    fn trouble(&self) -> MutexGuard<'_, Trouble> {
+        self.trouble.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -178,9 +229,10 @@ fn watch(device: &wgpu::Device, trouble: &Arc<Mutex<Trouble>>) {
     }));
     let losses = Arc::clone(trouble);
     device.set_device_lost_callback(move |reason, message| {
-        if reason != wgpu::DeviceLostReason::Destroyed {
-            let mut trouble = losses.lock().unwrap_or_else(PoisonError::into_inner);
-            trouble.lost.get_or_insert(format!("{reason:?} {message}"));
-        }
+        let text = match reason {
+            wgpu::DeviceLostReason::Destroyed => "it was destroyed".to_owned(),
+            wgpu::DeviceLostReason::Unknown => format!("its driver reports: {message}"),
+        };
+        losses.lock().unwrap_or_else(PoisonError::into_inner).lost.get_or_insert(text);
     });
 }

@@ -6,6 +6,7 @@ mod device;
 mod iterations;
 mod pace;
 mod pipeline;
+mod poll;
 pub mod probe;
 mod replay;
 mod scene;
@@ -13,5 +14,6 @@ mod tracer;
 
 pub use bytes::device_parts;
 pub use device::{Adapter, Gpu, adapters};
+pub use poll::is_polling;
 pub use replay::Replayer;
 pub use tracer::GpuTracer;

@@ -5,7 +5,6 @@ use crate::kernel::{Packed, SPHERE_CAPACITY, layout};
 use crate::tracer::TraceError;
 use bytemuck::{NoUninit, Zeroable};
 use std::borrow::Cow;
-use wgpu::util::DeviceExt;
 
 /// What a kernel is given at one binding.
 #[derive(Debug, Clone)]
@@ -40,21 +39,8 @@ impl SceneBuffers {
     /// If it has more spheres or lights than the device binds, or has no memory for them.
     pub(super) fn new(gpu: &Gpu, packed: &Packed) -> Result<Self, TraceError> {
         check_size(gpu, packed)?;
-        let binding = |part: Part| {
-            let usage = match part.kind {
-                wgpu::BufferBindingType::Uniform => wgpu::BufferUsages::UNIFORM,
-                wgpu::BufferBindingType::Storage { .. } => wgpu::BufferUsages::STORAGE,
-            };
-            let buffer = gpu.device().create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some(part.label),
-                contents: &part.contents,
-                usage,
-            });
-            Binding::new(part.number, part.kind, &buffer)
-        };
-        let bindings = parts(packed).into_iter().map(binding).collect();
-        gpu.check()?;
-        Ok(Self(bindings))
+        let binding = |part: Part| Ok(Binding::new(part.number, part.kind, &filled(gpu, &part)?));
+        Ok(Self(parts(packed).into_iter().map(binding).collect::<Result<_, TraceError>>()?))
     }
 
     /// Bytes of all of them.
@@ -92,6 +78,29 @@ fn check(gpu: &Gpu, what: &str, count: usize, most: u64) -> Result<(), TraceErro
         "the scene has {count} {what}; {} takes at most {most} (--device cpu takes any number)",
         gpu.description().device
     )))
+}
+
+/// A buffer with its contents. wgpu's own `create_buffer_init` panics where the device is lost or
+/// has no memory.
+fn filled(gpu: &Gpu, part: &Part) -> Result<wgpu::Buffer, TraceError> {
+    let buffer = gpu.device().create_buffer(&wgpu::BufferDescriptor {
+        label: Some(part.label),
+        size: part.contents.len() as u64,
+        usage: match part.kind {
+            wgpu::BufferBindingType::Uniform => wgpu::BufferUsages::UNIFORM,
+            wgpu::BufferBindingType::Storage { .. } => wgpu::BufferUsages::STORAGE,
+        },
+        mapped_at_creation: true,
+    });
+    gpu.check()?;
+    let mut mapped = buffer
+        .get_mapped_range_mut(..)
+        .map_err(|error| gpu.unmapped(format!("the scene cannot be written: {error}")))?;
+    mapped.copy_from_slice(&part.contents);
+    drop(mapped);
+    buffer.unmap();
+    gpu.check()?;
+    Ok(buffer)
 }
 
 /// One buffer of a scene.

@@ -129,9 +129,16 @@ impl GpuTracer {
             invalid: Ledger::default(),
             unread: 0,
             bands: bands.into_iter().zip(groups).collect(),
-            pace: Pace::default(),
+            pace: Pace::after(0),
             gpu,
         })
+    }
+
+    /// With smaller dispatches, for a device that was lost `losses` times in a row: a quarter for
+    /// each of them.
+    #[must_use]
+    pub fn paced_for(self, losses: u32) -> Self {
+        Self { pace: Pace::after(losses), ..self }
     }
 
     /// How long it took to make the pipeline from the kernel's text. Some drivers compile it only

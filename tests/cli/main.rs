@@ -15,6 +15,8 @@ mod hostile;
 mod kept;
 #[cfg(unix)]
 mod kills;
+#[cfg(target_os = "linux")]
+mod lossy;
 mod merge;
 mod pictures;
 mod replay;

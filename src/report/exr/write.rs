@@ -119,7 +119,7 @@ fn header(
         .with_attributes(own)
 }
 
-/// Header texts are UTF-8, as OpenEXR's own library takes them. The crate's would be Latin-1, which
+/// Header texts are UTF-8, as `OpenEXR`'s own library takes them. The crate's would be Latin-1, which
 /// others cannot read.
 fn utf8(text: &str) -> Text {
     Text::from_slice_unchecked(text.as_bytes())
