@@ -4,8 +4,8 @@
 //!
 //! [`scene`] → [`viewpoint`] → [`hierarchy`], [`light_tree`] → [`effects`], [`bound`], [`range`] →
 //! [`film`] → [`tracer`], [`trail`] → [`kernel`] → [`gpu`] or [`cpu`] (both a tracer) →
-//! [`enduring`] → [`estimate`] → [`watch`], [`pilot`], [`render`], [`verify`], [`cost`], [`replay`] → [`explain`] → [`report`] →
-//! [`cli`]
+//! [`enduring`] → [`estimate`] → [`watch`], [`pilot`], [`render`], [`verify`], [`cost`],
+//! [`replay`] → [`explain`] → [`report`] → [`cli`]
 //!
 //! A scene is read and validated, the effects that it calls for are decided, a kernel is
 //! composed of those and nothing else, a tracer adds samples to an exact film, and

@@ -50,13 +50,14 @@ impl Chosen {
         Enduring::new(make, tell)
     }
 
-    /// Films of a picture that a render on it keeps in this machine's memory while it takes
-    /// another one from the tracer: the last whole state and the next, and a tracer's own where
-    /// it computes on the processor. The twin shares its own with the states that are taken.
+    /// Films of a picture that a render on it keeps in this machine's memory at most: the last
+    /// whole state, the next one on its way, and an earlier one that is still being written as a
+    /// checkpoint; and a tracer's own where it computes on the processor. The twin shares its own
+    /// with the state that is taken.
     pub fn films(&self) -> u64 {
         match self {
-            Self::Adapter(adapter) if adapter.is_software() => 3,
-            Self::Adapter(_) | Self::Twin(_) => 2,
+            Self::Adapter(adapter) if adapter.is_software() => 4,
+            Self::Adapter(_) | Self::Twin(_) => 3,
         }
     }
 

@@ -6,6 +6,7 @@ use crate::film::{Film, PixelWords};
 use crate::report::FileError;
 use exr::block::UncompressedBlock;
 use exr::block::reader::Reader;
+use exr::error::Error;
 use exr::meta::MetaData;
 use exr::meta::attribute::{ChannelList, SampleType};
 use exr::prelude::Vec2;
@@ -80,7 +81,10 @@ impl StoredFilm {
         }
         let mut film = Film::awaiting(identity.size, identity.scale, samples.clone());
         read_words(reader, width as usize, film.pixels_mut())
-            .map_err(|error| fail(format!("is torn: {error}")))?;
+            .map_err(|error| match error {
+                Error::NotSupported(what) => fail(format!("cannot be read: {what}")),
+                other => fail(format!("is torn: {other}")),
+            })?;
         let found = film.checksum();
         if found != self.checksum {
             let stated = self.checksum;
@@ -116,7 +120,7 @@ fn read_words(
     reader: Reader<BufReader<File>>,
     width: usize,
     pixels: &mut [PixelWords],
-) -> Result<(), exr::error::Error> {
+) -> Result<(), Error> {
     let meta = reader.meta_data().clone();
     let words = words(&meta.headers[0].channels);
     let mut chunks = reader.all_chunks(false)?;

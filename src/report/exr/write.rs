@@ -96,7 +96,7 @@ fn header(
             Source::Colour(_) | Source::Error => SampleType::F32,
             Source::Word(_) => SampleType::U32,
         };
-        ChannelDescription::new(name, kind, true)
+        ChannelDescription::named(name, kind)
     });
     let size = Vec2(picture.size.width() as usize, picture.size.height() as usize);
     let mut own = LayerAttributes {
