@@ -63,7 +63,7 @@ impl Identity {
             ("size", self.size.to_string()),
             ("scene", format!("{hash}…")),
             ("estimator", self.estimator.name().to_owned()),
-            ("bounces", self.bounces.to_string()),
+            ("number of bounces", self.bounces.to_string()),
             ("seed", self.seed.to_string()),
             ("scale", self.scale.to_string()),
         ]

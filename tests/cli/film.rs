@@ -2,8 +2,8 @@
 
 use crate::candor::Folder;
 use candor::report::{Picture, StoredFilm, Sums, write_exr};
-use exr::meta::attribute::AttributeValue;
-use exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
+use exr::meta::attribute::{AttributeValue, Text};
+use exr::prelude::{FlatSamples, WritableImage, read_first_flat_layer_from_file};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub fn attributes(path: &Path) -> BTreeMap<String, String> {
 }
 
 /// What is the same in two films of the same samples: all pixels, the header but for the time
-/// that they took, and the length of the file.
+/// that they took and its checksum, and the length of the file.
 #[derive(PartialEq)]
 struct Comparable {
     channels: BTreeMap<String, Vec<u32>>,
@@ -48,7 +48,9 @@ impl Comparable {
     fn read(path: &Path) -> Self {
         let mut attributes = attributes(path);
         let seconds = attributes.remove("candor.seconds").expect("films say how long they took");
-        let length = fs::read(path).expect("the film is there").len() - seconds.len();
+        let checksum = attributes.remove("candor.headerChecksum").expect("films have one");
+        let length = fs::read(path).expect("the film is there").len();
+        let length = length - seconds.len() - checksum.len();
         Self { channels: channels(path), attributes, length }
     }
 }
@@ -77,15 +79,22 @@ pub fn rewrite(path: &Path, quick: bool, change: impl FnOnce(&mut candor::film::
     write_exr(path, &picture, sums, &stored.provenance).expect("it can be written");
 }
 
-/// Changes the value of a header's text for another one of the same length.
+/// Changes the value of a header's text, as a program would that keeps the header's checksum.
 pub fn patch(path: &Path, name: &str, from: &str, to: &str) {
-    assert_eq!(from.len(), to.len());
-    let mut start = format!("candor.{name}\0string\0").into_bytes();
-    start.extend(u32::try_from(from.len()).expect("short").to_le_bytes());
-    start.extend(from.as_bytes());
-    let mut bytes = fs::read(path).expect("a film");
-    let at = bytes.windows(start.len()).position(|window| window == start);
-    let end = at.unwrap_or_else(|| panic!("candor.{name} is not {from}")) + start.len();
-    bytes[end - to.len()..end].copy_from_slice(to.as_bytes());
-    fs::write(path, bytes).expect("it can be written");
+    let mut image = read_first_flat_layer_from_file(path).expect("a film");
+    let texts = &mut image.layer_data.attributes.other;
+    let value = |text: &str| AttributeValue::Text(Text::from(text));
+    let before = texts.insert(Text::from(format!("candor.{name}").as_str()), value(to));
+    assert_eq!(before, Some(value(from)), "candor.{name}");
+    let checksum = Text::from("candor.headerChecksum");
+    texts.remove(&checksum);
+    let lines = texts.iter().filter_map(|(name, value)| match value {
+        AttributeValue::Text(text) => Some(format!("{name}={text}\n")),
+        _ => None,
+    });
+    let mut lines: Vec<_> = lines.filter(|line| line.starts_with("candor.")).collect();
+    lines.sort_unstable();
+    let found = crc32fast::hash(lines.concat().as_bytes()).to_string();
+    texts.insert(checksum, value(&found));
+    image.write().to_file(path).expect("it can be written");
 }

@@ -129,7 +129,8 @@ fn a_seed_gives_the_same_bits_again() {
 fn sample_ranges_are_different_samples() {
     let folder = Folder::new();
     let render = |arguments: &str| {
-        let arguments = format!("render scene.toml --device cpu --quiet --force -o a.exr {arguments}");
+        let arguments =
+            format!("render scene.toml --device cpu --quiet --force -o a.exr {arguments}");
         folder.candor(&arguments).silently_done();
         Film::read(&folder.path("a.exr")).channels
     };

@@ -30,7 +30,7 @@ fn another_picture_is_refused_by_field_and_both_values() {
     for (arguments, difference) in [
         ("--seed 5", "the seed differs: 5 in this render, 0 in the film"),
         ("--estimator mis", "the estimator differs: mis in this render, implicit in the film"),
-        ("--bounces 3", "the bounces differs: 3 in this render, 2 in the film"),
+        ("--bounces 3", "the number of bounces differs: 3 in this render, 2 in the film"),
         ("--size 6x8", "the size differs: 6x8 in this render, 8x6 in the film"),
         // What is laid down first is told first.
         ("--seed 5 --size 6x8", "the size differs: 6x8 in this render, 8x6 in the film"),
@@ -137,6 +137,17 @@ fn a_bit_that_fell_over_is_refused() {
         fs::write(&path, &bytes).expect("written");
         refused(&folder, "", &["scene.exr: is torn: its sums have the checksum "]);
     }
+}
+
+/// Nothing but its checksum tells that the header speaks of other samples.
+#[test]
+fn a_header_that_was_changed_is_refused() {
+    let folder = begun();
+    let mut bytes = folder.read("scene.exr");
+    let at = bytes.windows(4).position(|window| window == b"0..4").expect("candor.samples");
+    bytes[at + 3] = b'5';
+    fs::write(folder.path("scene.exr"), bytes).expect("written");
+    refused(&folder, "", &["scene.exr: is torn: its header does not have the checksum "]);
 }
 
 #[test]

@@ -80,11 +80,10 @@ impl StoredFilm {
             return Err(fail("changed while it was read".to_owned()));
         }
         let mut film = Film::awaiting(identity.size, identity.scale, samples.clone());
-        read_words(reader, width as usize, film.pixels_mut())
-            .map_err(|error| match error {
-                Error::NotSupported(what) => fail(format!("cannot be read: {what}")),
-                other => fail(format!("is torn: {other}")),
-            })?;
+        read_words(reader, width as usize, film.pixels_mut()).map_err(|error| match error {
+            Error::NotSupported(what) => fail(format!("cannot be read: {what}")),
+            other => fail(format!("is torn: {other}")),
+        })?;
         let found = film.checksum();
         if found != self.checksum {
             let stated = self.checksum;
