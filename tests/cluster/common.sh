@@ -28,11 +28,20 @@ need_packages() {
         give_up "cannot install $*"
 }
 
+build_folder() { printf '%s' "${CARGO_TARGET_DIR:-$PWD/target}"; }
+
 # The program under test: CANDOR, or what this repository builds.
 candor_program() {
-    local target=${CARGO_TARGET_DIR:-$PWD/target}
     [[ -n ${CANDOR-} ]] || cargo build --release --locked --quiet
-    realpath -e -- "${CANDOR:-$target/release/candor}"
+    realpath -e -- "${CANDOR:-$(build_folder)/release/candor}"
 }
 
 same_pixels() { tests/cluster/same_pixels "$@"; }
+
+# refused WORDS COMMAND...: the command must fail, and say these words.
+refused() {
+    local wanted=$1 said
+    shift
+    ! said=$("$@" 2>&1) || fail "was not refused: $*"
+    [[ $said == *"$wanted"* ]] || fail "was refused for another reason than '$wanted': $said"
+}
