@@ -36,6 +36,9 @@ candor_program() {
     realpath -e -- "${CANDOR:-$(build_folder)/release/candor}"
 }
 
+# Runs $candor; only its errors are shown.
+run_quietly() { "$candor" "$@" --quiet >/dev/null; }
+
 same_pixels() { tests/cluster/same_pixels "$@"; }
 
 # refused WORDS COMMAND...: the command must fail, and say these words.
