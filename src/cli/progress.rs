@@ -165,3 +165,41 @@ pub(super) fn bar() -> ProgressBar {
     bar.set_style(style);
     bar
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Reporter;
+    use crate::film::SampleRanges;
+    use crate::render::{Begun, Plan, Progress};
+    use std::time::Duration;
+
+    /// What is said of a render that goes on from 1000 samples, which took 100 s, at ten times the
+    /// rate, `rounds` of 10 samples later.
+    fn said(time: Option<u64>, rounds: u64) -> String {
+        let plan = Plan {
+            begun: Begun { samples: 1000, elapsed: Duration::from_secs(100), next_look: None },
+            ranges: SampleRanges::default().missing(&(1000..7000)),
+            time: time.map(Duration::from_secs),
+            target_error: None,
+        };
+        let mut reporter = Reporter::new(true, 1, &plan);
+        let progress = |rounds: u64| Progress {
+            done: 1000 + 10 * rounds,
+            elapsed: Duration::from_secs(100) + Duration::from_millis(100 * rounds),
+            next_look: None,
+            summary: None,
+        };
+        (1..=rounds).for_each(|rounds| reporter.observe(&progress(rounds)));
+        reporter.text(&progress(rounds), reporter.first.expect("a round"))
+    }
+
+    /// The time left is that of this run's rate from its first round on: what was there before was
+    /// made at another one, and is not traced again.
+    #[test]
+    fn the_time_left_is_right_after_resuming() {
+        assert_eq!(said(None, 1), "1010 spp, 0.1 ksamples/s, 60 s left");
+        assert_eq!(said(None, 2), "1020 spp, 0.1 ksamples/s, 60 s left");
+        // The limit counts what was spent before.
+        assert_eq!(said(Some(130), 1), "1010 spp, 0.1 ksamples/s, 30 s left");
+    }
+}

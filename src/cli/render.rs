@@ -152,7 +152,9 @@ impl<'a> Job<'a> {
             streams::message(&format!("error: {error}"));
         }
         let cut_short = matches!(outcome.stop, Stop::Interrupted | Stop::Failed);
-        let summary = summary(&film, &ledger, !cut_short);
+        // One look at a limit is in the confidence, that of the render which began the film.
+        let planned = !cut_short && self.plan.begun.samples == 0;
+        let summary = summary(&film, &ledger, planned);
         log.add(&summary, outcome.elapsed);
         let (scene, target) = (self.scene, args.target_error);
         Ok(Finished { scene, origin, film, ledger, summary, outcome, target, log_error: log.end() })

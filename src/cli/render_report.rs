@@ -2,7 +2,7 @@
 
 use super::args::RenderArgs;
 use super::{DONE, FAILED, INTERRUPTED, REFUSED, ledger, units};
-use crate::estimate::Summary;
+use crate::estimate::{Summary, is_look, next_look};
 use crate::film::Film;
 use crate::render::{Outcome, Stop};
 use crate::report::{FileError, NextLook, Origin, Picture, Provenance, Spent};
@@ -162,6 +162,13 @@ impl Finished {
             Stop::Interrupted => return "the render was interrupted".to_owned(),
             Stop::Failed => return "the render failed".to_owned(),
             Stop::Done | Stop::Target | Stop::Time => {}
+        }
+        let samples = self.summary.samples;
+        if !is_look(samples) && self.summary.spread.ceiling(samples).is_finite() {
+            let look = next_look(samples, Some(samples + 1));
+            return format!(
+                "after --resume it is known at certain counts only, such as {look} spp"
+            );
         }
         let largest = f64::from(self.film.scale().bound()) / self.summary.luminance;
         format!("one sample may be {largest:.0e} times the mean, so much may not be found yet")

@@ -35,8 +35,8 @@ pub fn attributes(path: &Path) -> BTreeMap<String, String> {
         .collect()
 }
 
-/// What is the same in two films of the same samples: all pixels, the header but for the time
-/// that they took and its checksum, and the length of the file.
+/// What is the same in two films of the same samples: all pixels, the header but for what a render
+/// that goes on says otherwise, and the length of the file without that.
 #[derive(PartialEq)]
 struct Comparable {
     channels: BTreeMap<String, Vec<u32>>,
@@ -44,13 +44,17 @@ struct Comparable {
     length: usize,
 }
 
+/// The time that was spent; a bound, which a render that goes on has at fixed counts alone; and the
+/// checksum, which covers both.
+const OWN: [&str; 3] = ["candor.seconds", "candor.errorBound", "candor.headerChecksum"];
+
 impl Comparable {
     fn read(path: &Path) -> Self {
         let mut attributes = attributes(path);
-        let seconds = attributes.remove("candor.seconds").expect("films say how long they took");
-        let checksum = attributes.remove("candor.headerChecksum").expect("films have one");
-        let length = fs::read(path).expect("the film is there").len();
-        let length = length - seconds.len() - checksum.len();
+        let own = OWN.iter().filter_map(|&name| Some((name, attributes.remove(name)?)));
+        // Name, type, the length in four bytes, and the text.
+        let bytes = own.map(|(name, text)| name.len() + 1 + "string".len() + 1 + 4 + text.len());
+        let length = fs::read(path).expect("the film is there").len() - bytes.sum::<usize>();
         Self { channels: channels(path), attributes, length }
     }
 }

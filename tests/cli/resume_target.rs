@@ -41,6 +41,24 @@ fn a_target_is_reached_in_pieces() {
     assert_same(&folder, "a.exr", "whole.exr");
 }
 
+/// The count at which a render that goes on ends was chosen when the picture was known: a bound is
+/// stated there only if it is one of those that are fixed beforehand.
+#[test]
+fn a_film_that_was_gone_on_from_is_bounded_at_fixed_counts() {
+    let folder = Folder::new();
+    let bound = |arguments: &str| {
+        let arguments = format!("{RENDER} --json -o a.exr --target-error 0.1% {arguments}");
+        let json = folder.candor(&arguments).with_code(1).json();
+        json["error_bound"].is_number()
+    };
+    assert!(bound("--spp 37"));
+    assert!(!bound("--spp 65 --resume"));
+    assert!(bound("--spp 68 --resume"));
+    let line = format!("{RENDER} -o a.exr --target-error 0.1% --spp 69 --resume");
+    let said = folder.candor(&line).with_code(1).stdout;
+    assert!(said.contains("known at certain counts only, such as 72 spp"), "{said}");
+}
+
 /// The film of a target that was reached is that of as many samples, and a lower target goes on.
 #[test]
 fn a_lower_target_goes_on() {
