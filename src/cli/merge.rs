@@ -4,7 +4,7 @@ use super::args::MergeArgs;
 use super::output::{Outputs, Wishes};
 use super::progress::bar;
 use super::render::summary;
-use super::render_report::{error_text, facts};
+use super::render_report::{FilmJson, error_text, facts};
 use super::{DONE, Refusal, memory, on_terminal, refuse, streams};
 use crate::estimate::Summary;
 use crate::film::{Film, SampleRanges};
@@ -131,25 +131,9 @@ impl Merged {
     }
 
     fn report(&self, args: &MergeArgs, outputs: &[PathBuf]) -> String {
-        let Provenance { origin, spent, samples, .. } = &self.provenance;
         if args.json {
-            let json = Json {
-                device: &origin.tracer.device,
-                driver: &origin.tracer.driver,
-                estimator: origin.identity.estimator.name(),
-                width: origin.identity.size.width(),
-                height: origin.identity.size.height(),
-                spp: samples.count(),
-                samples: samples.to_string(),
-                missing: gaps(samples),
-                seconds: spent.seconds,
-                relative_error: self.summary.relative_error,
-                error_bound: self.summary.error_bound,
-                unproven_pixels: self.summary.unproven_pixels,
-                coarse_pixels: self.summary.coarse_pixels,
-                invalid_samples: spent.ledger.count,
-                outputs,
-            };
+            let film = FilmJson::of(&self.provenance, outputs);
+            let json = Json { film, missing: gaps(&self.provenance.samples) };
             return serde_json::to_string(&json).expect("plain values serialize");
         }
         let error = error_text(self.summary.relative_error);
@@ -162,19 +146,8 @@ impl Merged {
 /// The `--json` object.
 #[derive(Serialize)]
 struct Json<'a> {
-    device: &'a str,
-    driver: &'a str,
-    estimator: &'a str,
-    width: u32,
-    height: u32,
-    spp: u64,
-    samples: String,
+    #[serde(flatten)]
+    film: FilmJson<'a>,
+    /// The ranges of samples that no film holds.
     missing: Option<String>,
-    seconds: f64,
-    relative_error: Option<f64>,
-    error_bound: Option<f64>,
-    unproven_pixels: u64,
-    coarse_pixels: u64,
-    invalid_samples: u64,
-    outputs: &'a [PathBuf],
 }

@@ -30,6 +30,7 @@ mod resume;
 mod setup;
 mod steps;
 mod streams;
+mod values;
 mod verify;
 
 use crate::units;

@@ -26,9 +26,9 @@ pub(super) struct Finished {
     pub log_error: Option<FileError>,
 }
 
-/// The `--json` object.
+/// What `--json` says of a film, whether rendered or merged.
 #[derive(Serialize)]
-struct Json<'a> {
+pub(super) struct FilmJson<'a> {
     device: &'a str,
     driver: &'a str,
     estimator: &'a str,
@@ -37,16 +37,45 @@ struct Json<'a> {
     spp: u64,
     samples: String,
     seconds: f64,
-    samples_per_second: Option<f64>,
     relative_error: Option<f64>,
     error_bound: Option<f64>,
-    target_error: Option<f64>,
-    target_reached: Option<bool>,
     unproven_pixels: u64,
     coarse_pixels: u64,
     invalid_samples: u64,
-    invalid_records: Vec<ledger::Record>,
     outputs: &'a [PathBuf],
+}
+
+impl<'a> FilmJson<'a> {
+    pub fn of(film: &'a Provenance, outputs: &'a [PathBuf]) -> Self {
+        let Origin { identity, tracer, .. } = &film.origin;
+        Self {
+            device: &tracer.device,
+            driver: &tracer.driver,
+            estimator: identity.estimator.name(),
+            width: identity.size.width(),
+            height: identity.size.height(),
+            spp: film.samples.count(),
+            samples: film.samples.to_string(),
+            seconds: film.spent.seconds,
+            relative_error: film.relative_error,
+            error_bound: film.error_bound,
+            unproven_pixels: film.unproven_pixels,
+            coarse_pixels: film.coarse_pixels,
+            invalid_samples: film.spent.ledger.count,
+            outputs,
+        }
+    }
+}
+
+/// The `--json` object.
+#[derive(Serialize)]
+struct Json<'a> {
+    #[serde(flatten)]
+    film: FilmJson<'a>,
+    samples_per_second: Option<f64>,
+    target_error: Option<f64>,
+    target_reached: Option<bool>,
+    invalid_records: Vec<ledger::Record>,
 }
 
 impl Finished {
@@ -101,25 +130,13 @@ impl Finished {
     }
 
     fn json(&self, args: &RenderArgs, outputs: &[PathBuf]) -> String {
+        let film = self.provenance();
         let json = Json {
-            device: &self.origin.tracer.device,
-            driver: &self.origin.tracer.driver,
-            estimator: self.scene.settings().estimator().name(),
-            width: self.film.size().width(),
-            height: self.film.size().height(),
-            spp: self.summary.samples,
-            samples: self.film.samples().to_string(),
-            seconds: self.seconds(),
+            film: FilmJson::of(&film, outputs),
             samples_per_second: self.rate(),
-            relative_error: self.summary.relative_error,
-            error_bound: self.summary.error_bound,
             target_error: self.target,
             target_reached: self.target_reached(),
-            unproven_pixels: self.summary.unproven_pixels,
-            coarse_pixels: self.summary.coarse_pixels,
-            invalid_samples: self.ledger.count,
             invalid_records: ledger::records(args, &self.scene, &self.ledger),
-            outputs,
         };
         serde_json::to_string(&json).expect("plain values serialize")
     }
