@@ -218,6 +218,7 @@ impl Watch {
         if !is_look(done) {
             summary.error_bound = None;
         }
+        let proven = tracer.ledger()?.count == 0;
         if let (Some(target), true) = (self.target, done == self.target_look) {
             self.target_reached = summary.error_bound.is_some_and(|bound| bound <= target);
             // The look that reaches the target stays the next one: who goes on from a film that
@@ -226,6 +227,8 @@ impl Watch {
                 self.target_look = next_look(done, summary.spread.samples_to(target));
             }
         }
+        // Samples that are invalid add 0 where they should not.
+        summary.error_bound = summary.error_bound.filter(|_| proven);
         self.summary = Some(summary);
         let pause = looked.elapsed().div_f64(LOOK_SHARE).max(Duration::from_secs(1));
         self.next_time = elapsed + looked.elapsed() + pause;

@@ -137,6 +137,7 @@ mod tests {
                 tracer: Description { device: "a".into(), driver: "b".into(), software: true },
             },
             target: None,
+            aside: None,
             log_error: None,
             scene,
         }

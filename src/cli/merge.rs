@@ -24,7 +24,7 @@ pub(super) fn run(args: &MergeArgs) -> Result<u8, Refusal> {
     warn(args, &parts, &samples);
     let merged = Merged::of(&parts, args.quiet)?;
     let picture = Picture::develop(&merged.film, merged.provenance.origin.dark);
-    let (files, failed) = outputs.write(&picture, &merged.film, &merged.provenance)?;
+    let (files, failed) = outputs.write(&picture, &merged.film, &merged.provenance, None)?;
     if failed.is_none() || !files.is_empty() {
         streams::results(&merged.report(args, &files))?;
     }
@@ -123,7 +123,12 @@ impl Merged {
         let summary = if origin.dark {
             Summary::of_darkness(film.samples().count())
         } else {
-            summary(&film, &ledger, true)
+            let mut summary = summary(&film, &ledger, false);
+            // Which films are added may have been chosen by what they show: nothing but the first
+            // samples, at one of the fixed counts, is a look that the confidence is spread over.
+            let is_first = film.samples().missing(&(0..summary.samples)).count() == 0;
+            summary.error_bound = summary.error_bound.filter(|_| is_first);
+            summary
         };
         let spent = Spent { ledger, seconds, next_look: None };
         let provenance = Provenance::new(origin, spent, &film, &summary);

@@ -20,6 +20,7 @@ mod memory;
 mod merge;
 mod output;
 mod pilot;
+mod place;
 mod progress;
 mod render;
 mod render_report;
@@ -78,6 +79,7 @@ pub fn main() -> ExitCode {
     };
     environment::prepare(cli.command.threads(), cache.as_ref().map(TempDir::path));
     report_panics();
+    interrupt::survive_file_limits();
     let ended = std::panic::catch_unwind(|| match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Verify(args) => verify::run(args),

@@ -1,6 +1,7 @@
 //! Where the files of a render or a merge go, and what is already there.
 
 use super::args::WriteArgs;
+use super::place::{InTheWay, Ours, Stamp, beside, in_the_way, named};
 use super::{Refusal, refuse, streams};
 use crate::film::{Film, Identity, SampleRanges};
 use crate::report::{self, FileError, Picture, Provenance, Sums, There, look_at};
@@ -19,8 +20,10 @@ enum Format {
 pub(super) struct Outputs {
     files: Vec<(PathBuf, Format)>,
     wishes: Wishes,
-    /// Where checkpoints go, if not to the film that keeps the state.
-    aside: Option<PathBuf>,
+    /// Whether it is of a render, which keeps its state.
+    is_render: bool,
+    /// What was there at the start, in the order of the files.
+    at_start: Vec<Option<Stamp>>,
 }
 
 /// What the user wants of them.
@@ -72,7 +75,8 @@ impl Outputs {
         }
         // Films first: what is lost with a picture can be made from its film.
         files.sort_by_key(|&(_, format)| format != Format::Exr);
-        let outputs = Self { files, wishes, aside: None };
+        let at_start = files.iter().map(|(path, _)| Stamp::of(path)).collect();
+        let outputs = Self { files, wishes, is_render: stem.is_some(), at_start };
         outputs.check()?;
         Ok(outputs)
     }
@@ -114,87 +118,92 @@ impl Outputs {
         identity: Option<&Identity>,
         samples: &SampleRanges,
     ) -> Result<(), Refusal> {
-        match self.in_the_way(identity, samples)? {
-            None => Ok(()),
-            Some((path, why)) => {
-                refuse(format_args!("{} holds {why}; --force replaces it", path.display()))
-            }
-        }
-    }
-
-    /// Where checkpoints go: to the film that keeps the state, unless another one is there that
-    /// is not gone on from, and is replaced by a finished render only.
-    pub fn checkpoint(&mut self, resumed: bool) -> Result<Option<PathBuf>, Refusal> {
-        let Some(path) = self.state() else { return Ok(None) };
-        if resumed || look_at(path)? == There::Nothing {
-            return Ok(Some(path.to_owned()));
-        }
-        self.aside = Some(beside(path)?);
-        Ok(self.aside.clone())
+        let Some((path, InTheWay { what, same_picture })) = self.in_the_way(identity, samples)?
+        else {
+            return Ok(());
+        };
+        let resume = if same_picture && self.is_render { "--resume goes on from it, " } else { "" };
+        refuse(format_args!(
+            "{} holds {what}; {resume}-o names another file, --force replaces it",
+            path.display()
+        ))
     }
 
     /// Writes all files that can be written and returns where they are, and what is wrong with the
-    /// first of the others. Where a film that holds more or other samples than this render came
-    /// to is in the way (it was interrupted, or its time was up), that one is left alone and all
-    /// files go beside, under the next free number.
+    /// first of the others. Where something is in the way (a render was interrupted, or its time
+    /// was up), that is left alone and all files go beside, under the next free number; the film
+    /// that keeps the state to `aside`, if checkpoints went there.
     pub fn write(
         &self,
         picture: &Picture,
         film: &Film,
         provenance: &Provenance,
+        aside: Option<&Path>,
     ) -> Result<(Vec<PathBuf>, Option<Refusal>), Refusal> {
-        let better = self.in_the_way(Some(&provenance.origin.identity), film.samples())?;
-        if let (Some((path, why)), false) = (&better, self.wishes.quiet) {
-            streams::message(&format!("{} holds {why}, and stays as it is", path.display()));
+        let better = self.in_the_way(Some(&provenance.origin.identity), film.samples());
+        let better = match better {
+            Ok(None) => None,
+            Ok(Some((path, there))) => Some(format!("{} holds {}", path.display(), there.what)),
+            // What cannot be looked at may be anything.
+            Err(error) => Some(error.to_string()),
+        };
+        if let (Some(why), false) = (&better, self.wishes.quiet) {
+            streams::message(&format!("{why}, and stays as it is"));
         }
         let sums = if self.wishes.no_state { Sums::LeftOut } else { Sums::Compact(film) };
         let (mut written, mut failed) = (Vec::new(), None);
         for (path, format) in &self.files {
-            let path = match (&better, &self.aside) {
+            let path = match (&better, aside) {
                 (None, _) => path.clone(),
-                (Some(_), Some(aside)) if Some(path.as_path()) == self.state() => aside.clone(),
+                (Some(_), Some(aside)) if Some(path.as_path()) == self.state() => aside.to_owned(),
                 (Some(_), _) => beside(path)?,
             };
             let result = match format {
-                Format::Png => {
-                    report::write_png(&path, picture, self.wishes.exposure).map_err(Refusal::from)
-                }
-                Format::Exr => report::write_exr(&path, picture, sums, provenance)
-                    .map_err(|error| rescued(error, &path, picture, film, provenance)),
+                Format::Png => report::write_png(&path, picture, self.wishes.exposure),
+                Format::Exr => report::write_exr(&path, picture, sums, provenance),
             };
             match result {
                 Ok(()) => written.push(path),
-                Err(refusal) => failed = failed.or(Some(refusal)),
+                Err(error) => failed = failed.or(Some(error)),
             }
         }
-        let aside = self.aside.as_ref().filter(|aside| !written.contains(aside));
-        if let Some(aside) = aside.filter(|_| failed.is_none()) {
+        if let Some(aside) =
+            aside.filter(|aside| failed.is_none() && !written.iter().any(|w| w == aside))
+        {
             take_away(aside, &provenance.origin.identity, film.samples());
         }
+        let has_film = written.iter().any(|path| format_of(path) == Some(Format::Exr));
+        let failed = failed.map(|error| {
+            if has_film || self.films().next().is_none() {
+                error.into()
+            } else {
+                rescued(&error, picture, film, provenance)
+            }
+        });
         Ok((written, failed))
     }
 
-    /// A film in the way, and what it holds: more samples than these, or others of the same
-    /// picture.
+    /// What is in the way, and where.
     fn in_the_way(
         &self,
         identity: Option<&Identity>,
         samples: &SampleRanges,
-    ) -> Result<Option<(&Path, String)>, Refusal> {
+    ) -> Result<Option<(&Path, InTheWay)>, FileError> {
         if self.wishes.force {
             return Ok(None);
         }
-        for path in self.films() {
-            let There::Film { samples: there, provenance } = look_at(path)? else { continue };
-            let ours = samples.count();
-            if there > ours {
-                let why = format!("{there} samples per pixel, more than the {ours} of this render");
-                return Ok(Some((path, why)));
+        for ((path, format), at_start) in self.files.iter().zip(&self.at_start) {
+            if *format != Format::Exr {
+                continue;
             }
-            let same = provenance.filter(|there| Some(&there.origin.identity) == identity);
-            if let Some(others) = same.filter(|there| !samples.contains(&there.samples)) {
-                let why = format!("samples {} of the same picture", others.samples);
-                return Ok(Some((path, why)));
+            let ours = Ours {
+                identity,
+                samples,
+                has_sums: !self.wishes.no_state,
+                came_later: Stamp::of(path) != *at_start,
+            };
+            if let Some(found) = in_the_way(path, &ours)? {
+                return Ok(Some((path, found)));
             }
         }
         Ok(None)
@@ -210,41 +219,18 @@ fn take_away(checkpoint: &Path, identity: &Identity, samples: &SampleRanges) {
     }
 }
 
-/// What is said of a film that cannot be written where it should be: it goes to the system's
-/// folder for temporary files, so that its samples are not lost.
-fn rescued(
-    error: FileError,
-    path: &Path,
-    picture: &Picture,
-    film: &Film,
-    provenance: &Provenance,
-) -> Refusal {
-    let name = path.file_name().unwrap_or_default();
-    let Ok(elsewhere) = beside(&std::env::temp_dir().join(name)) else { return error.into() };
-    match report::write_exr(&elsewhere, picture, Sums::Compact(film), provenance) {
-        Ok(()) => Refusal(format!("error: {error}\nthe film is in {}", elsewhere.display())),
-        Err(_) => error.into(),
+/// What is said of a film that cannot be written where it should be: it goes to the system's folder
+/// for temporary files or to the current one, so that its samples are not lost.
+fn rescued(error: &FileError, picture: &Picture, film: &Film, provenance: &Provenance) -> Refusal {
+    let name = error.path.file_name().unwrap_or_default();
+    for folder in [std::env::temp_dir(), PathBuf::new()] {
+        let Ok(elsewhere) = beside(&folder.join(name)) else { continue };
+        if report::write_exr(&elsewhere, picture, Sums::Compact(film), provenance).is_ok() {
+            return Refusal(format!("error: {error}\nthe film is in {}", elsewhere.display()));
+        }
     }
-}
-
-/// The first of `box.1.exr`, `box.2.exr`, … that is not there yet.
-fn beside(path: &Path) -> Result<PathBuf, Refusal> {
-    let stem = path.file_stem().unwrap_or_default();
-    let ending = path.extension().unwrap_or_default().to_string_lossy();
-    let mut names =
-        (1..=u32::MAX).map(|i| path.with_file_name(named(stem, &format!("{i}.{ending}"))));
-    match names.find(|name| !name.exists()) {
-        Some(free) => Ok(free),
-        None => refuse(format_args!("{}: every name beside it is taken", path.display())),
-    }
-}
-
-/// The ending is added, not exchanged: `box.1.toml` makes `box.1.exr`, not `box.exr`.
-fn named(stem: &OsStr, ending: &str) -> PathBuf {
-    let mut name = stem.to_owned();
-    name.push(".");
-    name.push(ending);
-    PathBuf::from(name)
+    let tried = "nor in the folder for temporary files nor in the current one";
+    Refusal(format!("error: {error}, {tried}: what was rendered since the last checkpoint is lost"))
 }
 
 fn format_of(path: &Path) -> Option<Format> {

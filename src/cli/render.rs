@@ -15,21 +15,24 @@ use crate::render::{Audience, Begun, Outcome, Plan, Stop};
 use crate::report::{Origin, StoredFilm};
 use crate::scene::{MAX_SPP, Scene, Source};
 use crate::tracer::{Description, Ledger, Tracer};
+use std::path::Path;
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 pub(super) fn run(args: &RenderArgs) -> Result<u8, Refusal> {
     let (scene, source) = setup::load(&args.scene, &args.common, &args.sampling)?;
-    let mut outputs = outputs(args)?;
+    let outputs = outputs(args)?;
     let (scene, begun) = match outputs.state().filter(|_| args.resume) {
         Some(path) => resume::open(path, scene, args)?,
         None => (scene, None),
     };
     let job = Job::new(args, scene, source, begun)?;
     job.check_films(&outputs)?;
-    let finished = if job.scene.has_lights() { job.trace(&mut outputs)? } else { job.darkness()? };
+    let finished = if job.scene.has_lights() { job.trace(&outputs)? } else { job.darkness()? };
     interrupt::writing_begins();
+    let aside = finished.aside.as_deref();
     let (files, failed) =
-        outputs.write(&finished.picture(), &finished.film, &finished.provenance())?;
+        outputs.write(&finished.picture(), &finished.film, &finished.provenance(), aside)?;
     if failed.is_none() || !files.is_empty() {
         streams::results(&finished.report(args, &files))?;
     }
@@ -110,7 +113,7 @@ impl<'a> Job<'a> {
         Identity::of(&self.scene, sample_scale(&self.scene))
     }
 
-    fn trace(mut self, outputs: &mut Outputs) -> Result<Finished, Refusal> {
+    fn trace(mut self, outputs: &Outputs) -> Result<Finished, Refusal> {
         let (args, common) = (self.args, &self.args.common);
         let interrupt = interrupt::watch()?;
         let chosen = choose::choose(&common.device, common.threads)?;
@@ -135,8 +138,10 @@ impl<'a> Job<'a> {
         if let Some((film, begun)) = earlier.zip(self.begun.as_ref()) {
             tracer.restore(&film, &begun.provenance.spent.ledger)?;
         }
-        let path = outputs.checkpoint(self.begun.is_some())?;
-        let mut checkpoints = Checkpoints::new(path, &origin, args);
+        let begun = self.begun.as_ref().map(|film| film.provenance.samples.clone());
+        let begun = begun.unwrap_or_default();
+        let mut checkpoints = Checkpoints::new(outputs.state(), &origin, args, &begun)?;
+        checkpoints.announce(&reporter);
         let audience = if log.is_kept() { Audience::Log } else { reporter.audience() };
         let rendered =
             endure::trace(&mut tracer, &self.plan, interrupt, audience, &mut |at, tracer| {
@@ -145,6 +150,9 @@ impl<'a> Job<'a> {
                 checkpoints.observe(at, tracer, &reporter)
             });
         reporter.finish();
+        if interrupt.load(Ordering::Relaxed) {
+            reporter.message("interrupted; what there is is being written");
+        }
         checkpoints.finish(&reporter);
         let Traced { outcome, film, ledger, failure } = rendered?;
         drop(tracer);
@@ -157,7 +165,9 @@ impl<'a> Job<'a> {
         let summary = summary(&film, &ledger, planned);
         log.add(&summary, outcome.elapsed);
         let (scene, target) = (self.scene, args.target_error);
-        Ok(Finished { scene, origin, film, ledger, summary, outcome, target, log_error: log.end() })
+        let aside = checkpoints.aside().map(Path::to_owned);
+        let log_error = log.end();
+        Ok(Finished { scene, origin, film, ledger, summary, outcome, target, aside, log_error })
     }
 
     /// Says what is about to happen.
@@ -208,6 +218,7 @@ impl<'a> Job<'a> {
         Ok(Finished {
             summary,
             origin,
+            aside: None,
             log_error: log.end(),
             film: Film::awaiting(self.scene.size(), sample_scale(&self.scene), samples),
             ledger: Ledger::default(),

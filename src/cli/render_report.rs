@@ -22,6 +22,8 @@ pub(super) struct Finished {
     pub outcome: Outcome,
     /// The error that was aimed at.
     pub target: Option<f64>,
+    /// Where checkpoints went, if not to the film that keeps the state.
+    pub aside: Option<PathBuf>,
     /// Why the log is not whole.
     pub log_error: Option<FileError>,
 }
@@ -201,7 +203,8 @@ impl Finished {
 
     /// The last line: what was reached, and what the next halving of the error would cost.
     fn line(&self) -> String {
-        let missed = self.target.filter(|_| self.target_reached() == Some(false));
+        let provable = self.ledger.count == 0;
+        let missed = self.target.filter(|_| provable && self.target_reached() == Some(false));
         let more = missed.and_then(|target| self.more(target));
         let facts = facts(&self.provenance(), self.error(), more);
         format!("{}: {}", self.ending(), facts.join(", "))

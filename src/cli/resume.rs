@@ -1,6 +1,7 @@
 //! `--resume`: the film that a render goes on from.
 
 use super::args::{EstimatorChoice, RenderArgs};
+use super::place::left_beside;
 use super::{Refusal, refuse};
 use crate::bound::{self, sample_scale};
 use crate::film::Identity;
@@ -26,8 +27,12 @@ pub(super) fn open(
     }
     let ours = Identity::of(&scene, sample_scale(&scene));
     if let Err(difference) = ours.check(theirs) {
+        let hint = left_beside(path, &ours).map_or_else(
+            || "-o names another file".to_owned(),
+            |other| format!("-o {} goes on from another film, of this render", other.display()),
+        );
         return refuse(format_args!(
-            "{}: cannot be resumed: the {}; it stays as it is, and -o names another file",
+            "{}: cannot be resumed: the {}; it stays as it is, and {hint}",
             path.display(),
             difference.between("in this render", "in the film")
         ));

@@ -62,13 +62,7 @@ impl SampleRanges {
             return Err(RangeError::Overlap(shared));
         }
         self.0.insert(at, range);
-        self.0.dedup_by(|next, last| {
-            let touch = last.end == next.start;
-            if touch {
-                last.end = next.end;
-            }
-            touch
-        });
+        join(&mut self.0);
         Ok(())
     }
 
@@ -77,11 +71,22 @@ impl SampleRanges {
     /// # Errors
     /// If they share a sample, or are too many together.
     pub fn union(&self, other: &Self) -> Result<Self, RangeError> {
-        let mut union = self.clone();
-        for range in &other.0 {
-            union.insert(range.clone())?;
+        if let Some(shared) = self.shared(other) {
+            return Err(RangeError::Overlap(shared));
         }
-        Ok(union)
+        let mut all = [self.as_slice(), other.as_slice()].concat();
+        all.sort_unstable_by_key(|range| range.start);
+        Self::ascending(all)
+    }
+
+    /// Of disjoint ranges in ascending order.
+    fn ascending(mut ranges: Vec<Range<u64>>) -> Result<Self, RangeError> {
+        join(&mut ranges);
+        let all = Self(ranges);
+        if all.count() > MAX_SPP {
+            return Err(RangeError::TooMany(all.count()));
+        }
+        Ok(all)
     }
 
     /// The samples of `wanted` that are not there, ascending.
@@ -101,17 +106,40 @@ impl SampleRanges {
     /// Whether every sample of the other is there.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
-        other.0.iter().all(|range| self.missing(range).count() == 0)
+        other.0.iter().all(|range| {
+            let at = self.0.partition_point(|ours| ours.end < range.end);
+            self.0.get(at).is_some_and(|ours| ours.start <= range.start)
+        })
     }
 
     /// Samples that both hold: one run of them, if there are any.
     #[must_use]
     pub fn shared(&self, other: &Self) -> Option<Range<u64>> {
-        self.0.iter().find_map(|a| {
-            let mut both = other.0.iter().map(|b| a.start.max(b.start)..a.end.min(b.end));
-            both.find(|shared| !shared.is_empty())
-        })
+        let (mut ours, mut theirs) = (self.0.iter().peekable(), other.0.iter().peekable());
+        while let (Some(a), Some(b)) = (ours.peek(), theirs.peek()) {
+            let both = a.start.max(b.start)..a.end.min(b.end);
+            if !both.is_empty() {
+                return Some(both);
+            }
+            if a.end < b.end {
+                ours.next()
+            } else {
+                theirs.next()
+            };
+        }
+        None
     }
+}
+
+/// Joins ranges that touch.
+fn join(ranges: &mut Vec<Range<u64>>) {
+    ranges.dedup_by(|next, last| {
+        let touch = last.end == next.start;
+        if touch {
+            last.end = next.end;
+        }
+        touch
+    });
 }
 
 /// Reads what `Display` writes, such as `0..256,512..768`.
@@ -119,18 +147,23 @@ impl FromStr for SampleRanges {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let mut ranges = Self::default();
+        let mut ranges: Vec<Range<u64>> = Vec::new();
         for part in text.split(',') {
             let ends = part.split_once("..");
             let range = ends.and_then(|(a, b)| Some(a.parse().ok()?..b.parse().ok()?));
+            let from = ranges.last().map_or(0, |last| last.end);
             match range {
-                Some(range) if range.start < range.end => {
-                    ranges.insert(range).map_err(|error| error.to_string())?;
+                Some(range) if range.end > MAX_SAMPLE_INDEX => {
+                    return Err(RangeError::TooFar(range.end).to_string());
                 }
-                _ => return Err(format!("expected ranges such as 0..256, not \"{part}\"")),
+                Some(range) if from <= range.start && range.start < range.end => ranges.push(range),
+                _ => {
+                    let expected = "expected ascending ranges such as 0..256,512..768";
+                    return Err(format!("{expected}, not \"{part}\""));
+                }
             }
         }
-        Ok(ranges)
+        Self::ascending(ranges).map_err(|error| error.to_string())
     }
 }
 

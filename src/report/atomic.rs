@@ -4,8 +4,8 @@
 use super::FileError;
 use std::fs::{File, TryLockError};
 use std::io::{BufWriter, Write};
-use std::path::Path;
-use tempfile::NamedTempFile;
+use std::path::{Path, PathBuf};
+use tempfile::{Builder, NamedTempFile};
 
 /// Checks that files can be made in the folder of `path`, before work starts.
 ///
@@ -15,14 +15,18 @@ pub fn check_writable(path: &Path) -> Result<(), FileError> {
     if path.is_dir() {
         return Err(FileError::new(path, &"is a folder, not a file"));
     }
+    if path.metadata().is_ok_and(|there| !there.is_file()) {
+        return Err(FileError::new(path, &"is no regular file"));
+    }
     if !folder_of(path).is_dir() {
         let folder = folder_of(path).display();
         return Err(FileError::new(path, &format!("the folder {folder} does not exist")));
     }
-    temporary(path).map(drop)
+    temporary(&target(path)).map(drop)
 }
 
-/// Writes a file by way of a temporary one in the same folder.
+/// Writes a file by way of a temporary one in the same folder. A link stays, and what it leads to
+/// is replaced.
 ///
 /// # Errors
 /// If writing fails; a file that was there is then untouched.
@@ -30,14 +34,15 @@ pub fn replace(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> Result<(), String>,
 ) -> Result<(), FileError> {
-    let file = temporary(path)?;
     let fail = |reason: String| FileError::new(path, &format!("cannot be written: {reason}"));
+    let path = &target(path);
+    let file = temporary(path)?;
     let mut buffer = BufWriter::new(file.as_file());
     write(&mut buffer).map_err(fail)?;
     buffer.flush().map_err(|error| fail(error.to_string()))?;
     drop(buffer);
     file.as_file().sync_all().map_err(|error| fail(error.to_string()))?;
-    allow_reading(file.as_file());
+    keep_permissions(path, file.as_file());
     file.persist(path).map_err(|error| fail(error.error.to_string()))?;
     flush_folder(folder_of(path)).map_err(|error| fail(error.to_string()))
 }
@@ -47,10 +52,11 @@ pub fn replace(
 fn temporary(path: &Path) -> Result<NamedTempFile, FileError> {
     let prefix = prefix(path);
     sweep(folder_of(path), &prefix);
-    let named = tempfile::Builder::new().prefix(&prefix).tempfile_in(folder_of(path));
+    let named = as_new(Builder::new().prefix(&prefix)).tempfile_in(folder_of(path));
     let file = named.map_err(|error| {
         // The whole error names the temporary file, which says nothing to the user.
-        FileError::new(path, &format!("cannot be written: {}", error.kind()))
+        let system = error.raw_os_error().map(std::io::Error::from_raw_os_error);
+        FileError::new(path, &format!("cannot be written: {}", system.unwrap_or(error)))
     })?;
     match file.as_file().try_lock() {
         // Another process took it for one that was left, and is about to take it away.
@@ -73,7 +79,8 @@ fn prefix(path: &Path) -> String {
 fn sweep(folder: &Path, prefix: &str) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(prefix)) {
-        if let Ok(left) = File::open(entry.path())
+        // Some network file systems lock only what may be written.
+        if let Ok(left) = File::options().write(true).open(entry.path())
             && left.try_lock().is_ok()
         {
             let _ = std::fs::remove_file(entry.path());
@@ -81,10 +88,17 @@ fn sweep(folder: &Path, prefix: &str) {
     }
 }
 
-/// Makes the renaming last. Windows neither needs nor allows it.
+/// Makes the renaming last. Windows neither needs nor allows it, nor do some file systems, and a
+/// folder that may be written need not be readable.
 #[cfg(unix)]
 fn flush_folder(folder: &Path) -> std::io::Result<()> {
-    File::open(folder)?.sync_all()
+    use std::io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(error) if !matches!(error.kind(), InvalidInput | PermissionDenied | Unsupported) => {
+            Err(error)
+        }
+        _ => Ok(()),
+    }
 }
 
 #[cfg(not(unix))]
@@ -99,13 +113,33 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// A temporary file is private; a picture is not. Where this is refused (some network
-/// file systems), the picture stays private, which is no reason to lose it.
+/// Where a link leads, through other links too; any other path is its own target.
+fn target(path: &Path) -> PathBuf {
+    let mut target = path.to_owned();
+    // More links than the system follows are a circle: writing says so.
+    for _ in 0..40 {
+        let Ok(next) = std::fs::read_link(&target) else { break };
+        target = folder_of(&target).join(next);
+    }
+    target
+}
+
+/// A file that takes the place of another one is as open to others as that was. Where this is
+/// refused (some network file systems), it is as any new file, which is no reason to lose it.
+fn keep_permissions(path: &Path, file: &File) {
+    if let Ok(there) = path.metadata() {
+        let _ = file.set_permissions(there.permissions());
+    }
+}
+
+/// What a new file is to others, less what the process's mask takes.
 #[cfg(unix)]
-fn allow_reading(file: &File) {
+fn as_new<'a, 'b>(builder: &'b mut Builder<'a, 'a>) -> &'b mut Builder<'a, 'a> {
     use std::os::unix::fs::PermissionsExt;
-    let _ = file.set_permissions(std::fs::Permissions::from_mode(0o644));
+    builder.permissions(std::fs::Permissions::from_mode(0o666))
 }
 
 #[cfg(not(unix))]
-fn allow_reading(_: &File) {}
+fn as_new<'a, 'b>(builder: &'b mut Builder<'a, 'a>) -> &'b mut Builder<'a, 'a> {
+    builder
+}

@@ -67,7 +67,13 @@ fn a_film_with_more_samples_is_replaced_only_by_force() {
     let render = "render scene.toml --device cpu --quiet -o a.exr --spp";
     folder.candor(&format!("{render} 8")).silently_done();
     let eight = folder.read("a.exr");
-    folder.candor(&format!("{render} 3")).refused(&["a.exr", "8 samples", "the 3 of", "--force"]);
+    folder.candor(&format!("{render} 3")).refused(&[
+        "a.exr",
+        "8 samples",
+        "more than 3",
+        "--resume goes on from it",
+        "--force",
+    ]);
     assert_eq!(folder.read("a.exr"), eight);
     folder.candor(&format!("{render} 8")).silently_done();
     folder.candor(&format!("{render} 3 --force")).silently_done();
@@ -114,7 +120,7 @@ fn a_film_survives_a_failed_write() {
     let old = folder.read("a.exr");
     let render = folder.command("render scene.toml --device cpu --quiet -o a.exr --size 64x64");
     let mut shell = std::process::Command::new("sh");
-    shell.args(["-c", "trap '' XFSZ; ulimit -f 1; exec \"$@\"", "sh"]);
+    shell.args(["-c", "ulimit -f 1; exec \"$@\"", "sh"]);
     shell.arg(render.get_program()).args(render.get_args()).current_dir(folder.path(""));
     Running::start(&mut shell).end().refused(&["a.exr: cannot be written: "]);
     assert_eq!(folder.read("a.exr"), old);

@@ -10,7 +10,7 @@ fn a_film_of_other_samples_is_replaced_only_by_force() {
     folder.candor(&format!("{render} --samples 0..4")).silently_done();
     let first = folder.read("a.exr");
     for samples in ["4..8", "2..7"] {
-        let parts = ["a.exr holds samples 0..4 of the same picture; --force replaces it"];
+        let parts = ["a.exr holds samples 0..4 of the same picture; --resume"];
         folder.candor(&format!("{render} --samples {samples}")).refused(&parts);
         assert_eq!(folder.read("a.exr"), first);
     }

@@ -12,6 +12,8 @@ mod explain;
 mod film;
 mod films;
 mod hostile;
+#[cfg(unix)]
+mod intruders;
 mod kept;
 #[cfg(unix)]
 mod kills;

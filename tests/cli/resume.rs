@@ -96,7 +96,7 @@ fn the_first_of_several_films_is_gone_on_from() {
     // The other way round, what is there would be lost.
     folder
         .candor(&format!("{RENDER} -o c.exr -o a.exr --resume --spp 5"))
-        .refused(&["a.exr holds 9 samples per pixel, more than the 5", "--force"]);
+        .refused(&["a.exr holds 9 samples per pixel, more than 5", "--force"]);
 }
 
 /// A longer time: what fits into it depends on the machine, the pixels do not.

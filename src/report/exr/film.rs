@@ -15,9 +15,10 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Chunks that are taken apart at a time: enough for some threads, little memory beside the film
-/// (16 rows each, so 28 MB of files as wide as 1920 pixels).
-const CHUNKS: usize = 8;
+/// Bytes of pixels that are taken apart at a time: enough for some threads (a chunk of candor's
+/// has 16 rows, 2 MB of a picture 1920 pixels wide), little beside a film. A chunk of another
+/// program's file may be as large as the whole picture.
+const AT_A_TIME: usize = 1 << 24;
 
 /// A film in a file, known by its header before its sums are read.
 #[derive(Debug, Clone)]
@@ -96,8 +97,13 @@ impl StoredFilm {
 }
 
 fn reader(path: &Path) -> Result<Reader<BufReader<File>>, FileError> {
-    if path.is_dir() {
-        return Err(FileError::new(path, &"is a folder, not a file"));
+    // A pipe would be waited for.
+    match path.metadata() {
+        Ok(there) if there.is_dir() => {
+            return Err(FileError::new(path, &"is a folder, not a file"));
+        }
+        Ok(there) if !there.is_file() => return Err(FileError::new(path, &"is no regular file")),
+        _ => {}
     }
     let file = File::open(path).map_err(|error| FileError::new(path, &error))?;
     exr::block::read(BufReader::new(file), false)
@@ -122,9 +128,10 @@ fn read_words(
 ) -> Result<(), Error> {
     let meta = reader.meta_data().clone();
     let words = words(&meta.headers[0].channels);
+    let at_a_time = (AT_A_TIME / meta.headers[0].max_block_byte_size().max(1)).max(1);
     let mut chunks = reader.all_chunks(false)?;
     loop {
-        let some: Vec<_> = chunks.by_ref().take(CHUNKS).collect();
+        let some: Vec<_> = chunks.by_ref().take(at_a_time).collect();
         if some.is_empty() {
             return Ok(());
         }

@@ -134,6 +134,7 @@ impl Provenance {
             seed: required(part, "seed")?,
             scale: scale(part)?,
         };
+        let samples: SampleRanges = required(part, "samples")?;
         let tracer = Description {
             device: required(part, "device")?,
             driver: required(part, "driver")?,
@@ -147,11 +148,11 @@ impl Provenance {
                 tracer,
             },
             spent: Spent {
-                ledger: ledger(part, size)?,
-                seconds: non_negative(part, "seconds")?,
+                ledger: ledger(part, size, &samples)?,
+                seconds: seconds(part, "seconds")?,
                 next_look: optional::<NextLook>(part, "nextLook")?,
             },
-            samples: required(part, "samples")?,
+            samples,
             unproven_pixels: required(part, "unprovenPixels")?,
             coarse_pixels: required(part, "coarsePixels")?,
             relative_error: optional(part, "relativeError")?,
@@ -200,6 +201,9 @@ pub(super) fn checksum(own: &LayerAttributes) -> u32 {
     hasher.finalize()
 }
 
+/// Nobody has spent more: some 30,000 years.
+const MOST_SECONDS: f64 = 1e12;
+
 /// The text of an attribute of candor's.
 pub(super) fn text(part: &Header, name: &str) -> Option<String> {
     let name = Text::new_or_none(format!("{PREFIX}{name}"))?;
@@ -227,12 +231,12 @@ fn optional<T: FromStr<Err: fmt::Display>>(part: &Header, name: &str) -> Result<
     parsed.transpose()
 }
 
-fn non_negative(part: &Header, name: &str) -> Result<f64, String> {
+fn seconds(part: &Header, name: &str) -> Result<f64, String> {
     let value: f64 = required(part, name)?;
-    if value.is_finite() && value >= 0.0 {
+    if (0.0..=MOST_SECONDS).contains(&value) {
         return Ok(value);
     }
-    Err(format!("{PREFIX}{name} in its header is {value}: expected a number from 0 on"))
+    Err(format!("{PREFIX}{name} in its header is {value}: expected 0 to {MOST_SECONDS}"))
 }
 
 /// The scale, from the bound that it was made from.
@@ -253,8 +257,13 @@ fn records(ledger: &Ledger, width: u32) -> String {
     ledger.records.iter().map(record).collect::<Vec<_>>().join("; ")
 }
 
-fn ledger(part: &Header, size: ImageSize) -> Result<Ledger, String> {
+fn ledger(part: &Header, size: ImageSize, samples: &SampleRanges) -> Result<Ledger, String> {
     let mut ledger = Ledger { count: required(part, "invalidSamples")?, records: Vec::new() };
+    let all = u64::from(size.pixels()).saturating_mul(samples.count());
+    if ledger.count > all {
+        let count = ledger.count;
+        return Err(format!("{PREFIX}invalidSamples in its header is {count}, of {all} samples"));
+    }
     for record in text(part, "invalidRecords").iter().flat_map(|records| records.split("; ")) {
         let Some(sample) = invalid_sample(record, size) else {
             return Err(format!("{PREFIX}invalidRecords in its header has \"{record}\""));
