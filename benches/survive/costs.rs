@@ -2,6 +2,10 @@
 
 use super::program::{Cost, Folder};
 use candor::report::{Picture, StoredFilm, Sums, write_exr};
+use exr::meta::MetaData;
+use exr::meta::attribute::AttributeValue;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 const SIZE: &str = "1920x1080";
 const PIXELS: f64 = 1920.0 * 1080.0;
@@ -9,7 +13,7 @@ const PIXELS: f64 = 1920.0 * 1080.0;
 const FILM: f64 = 52.0 * PIXELS;
 
 /// Films that are merged.
-const PARTS: u32 = 100;
+const PARTS: usize = 100;
 
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
@@ -66,35 +70,69 @@ pub fn checkpoints(turns: u32, spp: u64) {
 /// A hundred films of one sample each, under the estimator that leaves the fewest zeros in them.
 /// Only the time matters here, so that one film's sums stand for all: its header is given other
 /// samples.
+#[expect(clippy::cast_precision_loss, reason = "for show")]
 pub fn merging() {
     let folder = Folder::new();
-    let needed = u64::from(PARTS) * 80_000_000;
+    let needed = PARTS as u64 * 80_000_000;
     let free = folder.free();
     assert!(free > needed, "the parts take up to {needed} bytes of disk, {free} are free");
     let render = format!("render scene.toml --device gpu --quiet --estimator mis --size {SIZE}");
     folder.run(&format!("{render} --samples 100..101 -o 100.exr"));
     let first = std::fs::read(folder.path("100.exr")).expect("the film is there");
-    let found = first.windows(8).position(|bytes| bytes == b"100..101");
-    let at = found.expect("the header says which samples these are");
-    let films: Vec<String> = (100..100 + PARTS).map(|part| format!("{part}.exr")).collect();
-    for (part, film) in (100..).zip(&films) {
-        let mut bytes = first.clone();
-        bytes[at..at + 8].copy_from_slice(format!("{part}..{}", part + 1).as_bytes());
-        std::fs::write(folder.path(film), bytes).expect("it can be written");
+    let texts = texts(&folder.path("100.exr"));
+    let mut films = Vec::new();
+    for part in (100..999).step_by(2) {
+        if let Some(bytes) = renumbered(&first, &texts, part).filter(|_| films.len() < PARTS) {
+            films.push(format!("{part}.exr"));
+            std::fs::write(folder.path(&films[films.len() - 1]), bytes).expect("written");
+        }
     }
     let cost = folder.measure(&format!("merge --quiet {} -o sum.exr", films.join(" ")), "sum.exr");
     let stored = StoredFilm::open(&folder.path("sum.exr")).expect("a film");
-    assert_eq!(stored.provenance.samples.to_string(), format!("100..{}", 100 + PARTS));
-    #[expect(clippy::cast_precision_loss, reason = "for show")]
+    assert_eq!(stored.provenance.samples.count(), PARTS as u64);
     let memory = cost.memory as f64 / FILM;
     println!("| films of {SIZE} | time | rate | processor | peak memory |\n|---|---|---|---|---|");
     println!(
         "| {PARTS} | {:.1} s | {:.1} Mpixel/s | {:.1} s | {memory:.2} films of {:.0} MB |\n",
         cost.wall,
-        f64::from(PARTS) * PIXELS / 1e6 / cost.wall,
+        PARTS as f64 * PIXELS / 1e6 / cost.wall,
         cost.processor,
         FILM / 1e6
     );
+}
+
+/// candor's texts in a film's header.
+fn texts(film: &Path) -> BTreeMap<String, String> {
+    let meta = MetaData::read_from_file(film, false).expect("a film");
+    let own = meta.headers.into_iter().flat_map(|part| part.own_attributes.other);
+    own.filter_map(|(name, value)| match value {
+        AttributeValue::Text(text) => Some((name.to_string(), text.to_string())),
+        _ => None,
+    })
+    .collect()
+}
+
+/// The film's bytes with the samples `part..part + 1` in its header in place of 100..101, where
+/// the header's checksum (docs/film.md) has as many digits then.
+fn renumbered(film: &[u8], texts: &BTreeMap<String, String>, part: u32) -> Option<Vec<u8>> {
+    let samples = format!("{part}..{}", part + 1);
+    let line = |(name, text): (&String, &String)| match name.as_str() {
+        "candor.headerChecksum" => String::new(),
+        "candor.samples" => format!("{name}={samples}\n"),
+        _ => format!("{name}={text}\n"),
+    };
+    let lines: String =
+        texts.iter().filter(|(name, _)| name.starts_with("candor.")).map(line).collect();
+    let checksum = crc32fast::hash(lines.as_bytes()).to_string();
+    let mut bytes = film.to_vec();
+    let changes =
+        [(&texts["candor.samples"], samples), (&texts["candor.headerChecksum"], checksum)];
+    for (from, to) in changes.into_iter() {
+        let at = film.windows(from.len()).position(|window| window == from.as_bytes())?;
+        (from.len() == to.len()).then_some(())?;
+        bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
+    }
+    Some(bytes)
 }
 
 /// Bytes per pixel of the classic scene's files.
