@@ -151,7 +151,7 @@ impl<'a> Job<'a> {
             });
         reporter.finish();
         if interrupt.load(Ordering::Relaxed) {
-            reporter.message("interrupted; what there is is being written");
+            reporter.message("interrupted: writing what was rendered");
         }
         checkpoints.finish(&reporter);
         let Traced { outcome, film, ledger, failure } = rendered?;
