@@ -127,7 +127,7 @@ fn renumbered(film: &[u8], texts: &BTreeMap<String, String>, part: u32) -> Optio
     let mut bytes = film.to_vec();
     let changes =
         [(&texts["candor.samples"], samples), (&texts["candor.headerChecksum"], checksum)];
-    for (from, to) in changes.into_iter() {
+    for (from, to) in changes {
         let at = film.windows(from.len()).position(|window| window == from.as_bytes())?;
         (from.len() == to.len()).then_some(())?;
         bytes[at..at + to.len()].copy_from_slice(to.as_bytes());
