@@ -78,11 +78,10 @@ impl Checkpoints {
         self.finish(reporter);
         let Some(path) = self.path.clone() else { return Ok(()) };
         self.last = Instant::now();
-        let next_look = std::iter::zip(self.target, progress.next_look).next();
         let spent = Spent {
             ledger: tracer.ledger()?,
             seconds: progress.elapsed.as_secs_f64(),
-            next_look: next_look.map(|(target, samples)| NextLook { target, samples }),
+            next_look: NextLook::planned(self.target, progress.next_look),
         };
         let (film, origin) = (tracer.film()?, self.origin.clone());
         let place = path.clone();

@@ -1,7 +1,7 @@
 //! Where the files of a render or a merge go, and what is already there.
 
 use super::args::WriteArgs;
-use super::place::{InTheWay, Ours, Stamp, beside, in_the_way, named};
+use super::place::{InTheWay, Ours, Stamp, beside, in_the_way, is_part, named};
 use super::{Refusal, refuse, streams};
 use crate::film::{Film, Identity, SampleRanges};
 use crate::report::{self, FileError, Picture, Provenance, Sums, There, look_at};
@@ -213,8 +213,7 @@ impl Outputs {
 /// Takes the last checkpoint away, all of whose samples are in a film that is written. Nothing is
 /// there where the render was too short for one, and another render's film may be: that stays.
 fn take_away(checkpoint: &Path, identity: &Identity, samples: &SampleRanges) {
-    let Ok(There::Film { provenance: Some(there), .. }) = look_at(checkpoint) else { return };
-    if there.origin.identity == *identity && samples.contains(&there.samples) {
+    if look_at(checkpoint).is_ok_and(|there| is_part(&there, identity, samples)) {
         let _ = std::fs::remove_file(checkpoint);
     }
 }

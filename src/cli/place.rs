@@ -1,6 +1,5 @@
 //! Where a film is to go: what is there, and whether it may be replaced.
 
-use super::{Refusal, refuse};
 use crate::film::{Identity, SampleRanges};
 use crate::report::{FileError, There, look_at};
 use std::ffi::OsStr;
@@ -76,35 +75,36 @@ pub(super) fn for_checkpoint(
     identity: &Identity,
     samples: &SampleRanges,
 ) -> Result<PathBuf, FileError> {
-    let ours = match look_at(path)? {
-        There::Nothing => true,
-        There::Foreign => false,
-        There::Film { provenance, .. } => provenance.is_some_and(|there| {
-            there.origin.identity == *identity && samples.contains(&there.samples)
-        }),
-    };
-    if ours {
+    let there = look_at(path)?;
+    if there == There::Nothing || is_part(&there, identity, samples) {
         return Ok(path.to_owned());
     }
-    let taken = || FileError::new(path, &"every name beside it is taken");
-    numbered(path).find(|name| !name.exists()).ok_or_else(taken)
+    beside(path)
+}
+
+/// Whether what is there is a film of the same picture, none of whose samples would be lost with it.
+pub(super) fn is_part(there: &There, identity: &Identity, samples: &SampleRanges) -> bool {
+    match there {
+        There::Film { provenance: Some(there), .. } => {
+            there.origin.identity == *identity && samples.contains(&there.samples)
+        }
+        _ => false,
+    }
 }
 
 /// The film beside `path` that a render of this picture left there, if one did.
 pub(super) fn left_beside(path: &Path, identity: &Identity) -> Option<PathBuf> {
-    let there = numbered(path).take_while(|name| name.exists());
-    there.into_iter().find(|name| match look_at(name) {
+    let mut there = numbered(path).take_while(|name| name.exists());
+    there.find(|name| match look_at(name) {
         Ok(There::Film { provenance: Some(film), .. }) => film.origin.identity == *identity,
         _ => false,
     })
 }
 
 /// The first of `box.1.exr`, `box.2.exr`, … that is not there yet.
-pub(super) fn beside(path: &Path) -> Result<PathBuf, Refusal> {
-    match numbered(path).find(|name| !name.exists()) {
-        Some(free) => Ok(free),
-        None => refuse(format_args!("{}: every name beside it is taken", path.display())),
-    }
+pub(super) fn beside(path: &Path) -> Result<PathBuf, FileError> {
+    let taken = || FileError::new(path, &"every name beside it is taken");
+    numbered(path).find(|name| !name.exists()).ok_or_else(taken)
 }
 
 fn numbered(path: &Path) -> impl Iterator<Item = PathBuf> {

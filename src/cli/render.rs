@@ -78,7 +78,7 @@ impl<'a> Job<'a> {
         source: Source,
         begun: Option<StoredFilm>,
     ) -> Result<Self, Refusal> {
-        let there = begun.as_ref().map(|film| film.provenance.samples.clone()).unwrap_or_default();
+        let there = samples(begun.as_ref());
         let limited = args.time.is_some() || args.target_error.is_some();
         let spp = match args.sampling.spp {
             None if limited => MAX_SPP - there.count(),
@@ -138,8 +138,7 @@ impl<'a> Job<'a> {
         if let Some((film, begun)) = earlier.zip(self.begun.as_ref()) {
             tracer.restore(&film, &begun.provenance.spent.ledger)?;
         }
-        let begun = self.begun.as_ref().map(|film| film.provenance.samples.clone());
-        let begun = begun.unwrap_or_default();
+        let begun = samples(self.begun.as_ref());
         let mut checkpoints = Checkpoints::new(outputs.state(), &origin, args, &begun)?;
         checkpoints.announce(&reporter);
         let audience = if log.is_kept() { Audience::Log } else { reporter.audience() };
@@ -197,16 +196,15 @@ impl<'a> Job<'a> {
     fn darkness(self) -> Result<Finished, Refusal> {
         memory::check(self.scene.size(), memory::needed(&self.scene, 1))?;
         let args = self.args;
-        let mut samples = self.planned.clone();
+        let mut known = self.planned.clone();
         if args.target_error.is_some() {
             // A target is reached at the first look, or by whatever is there.
-            let begun = self.begun.as_ref().map(|film| film.provenance.samples.clone());
-            samples = begun.unwrap_or_default();
-            if samples.count() == 0 {
-                samples.insert(0..FIRST_LOOK)?;
+            known = samples(self.begun.as_ref());
+            if known.count() == 0 {
+                known.insert(0..FIRST_LOOK)?;
             }
         }
-        let summary = Summary::of_darkness(samples.count());
+        let summary = Summary::of_darkness(known.count());
         let elapsed = self.plan.begun.elapsed;
         let mut log = Log::create(args, 0)?;
         log.add(&summary, elapsed);
@@ -220,7 +218,7 @@ impl<'a> Job<'a> {
             origin,
             aside: None,
             log_error: log.end(),
-            film: Film::awaiting(self.scene.size(), sample_scale(&self.scene), samples),
+            film: Film::awaiting(self.scene.size(), sample_scale(&self.scene), known),
             ledger: Ledger::default(),
             outcome: Outcome { stop: Stop::Done, elapsed, next_look: None },
             target: args.target_error,
@@ -238,6 +236,11 @@ impl<'a> Job<'a> {
             tracer: before.map_or_else(|| tracer.clone(), |before| before.and(tracer)),
         }
     }
+}
+
+/// The samples of a film that is gone on from, if there is one.
+fn samples(begun: Option<&StoredFilm>) -> SampleRanges {
+    begun.map(|film| film.provenance.samples.clone()).unwrap_or_default()
 }
 
 /// What is known of a film that is gone on from.

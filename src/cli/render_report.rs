@@ -97,12 +97,11 @@ impl Finished {
     }
 
     pub(super) fn provenance(&self) -> Provenance {
-        let planned = std::iter::zip(self.target, self.outcome.next_look).next();
-        let next_look = planned.filter(|_| self.outcome.stop != Stop::Target);
+        let planned = NextLook::planned(self.target, self.outcome.next_look);
         let spent = Spent {
             ledger: self.ledger.clone(),
             seconds: self.seconds(),
-            next_look: next_look.map(|(target, samples)| NextLook { target, samples }),
+            next_look: planned.filter(|_| self.outcome.stop != Stop::Target),
         };
         Provenance::new(self.origin.clone(), spent, &self.film, &self.summary)
     }

@@ -65,6 +65,14 @@ pub struct NextLook {
     pub samples: u64,
 }
 
+impl NextLook {
+    /// The look, if there is a target.
+    #[must_use]
+    pub fn planned(target: Option<f64>, samples: Option<u64>) -> Option<Self> {
+        Some(Self { target: target?, samples: samples? })
+    }
+}
+
 impl Provenance {
     /// That of a film with this summary.
     #[must_use]
@@ -121,10 +129,7 @@ impl Provenance {
     /// # Errors
     /// The attribute that is missing, or what is wrong with it.
     pub(super) fn read(part: &Header) -> Result<Self, String> {
-        let Vec2(width, height) = part.layer_size;
-        let pixels = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
-        let size = ImageSize::new(pixels(width), pixels(height))
-            .map_err(|allowed| format!("is {width}x{height}; each side must be {allowed}"))?;
+        let size = size(part)?;
         let identity = Identity {
             numbers: required(part, "numbers")?,
             size,
@@ -203,6 +208,14 @@ pub(super) fn checksum(own: &LayerAttributes) -> u32 {
 
 /// Nobody has spent more: some 30,000 years.
 const MOST_SECONDS: f64 = 1e12;
+
+/// Size of the data window.
+pub(super) fn size(part: &Header) -> Result<ImageSize, String> {
+    let Vec2(width, height) = part.layer_size;
+    let pixels = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
+    ImageSize::new(pixels(width), pixels(height))
+        .map_err(|allowed| format!("is {width}x{height}; each side must be {allowed}"))
+}
 
 /// The text of an attribute of candor's.
 pub(super) fn text(part: &Header, name: &str) -> Option<String> {

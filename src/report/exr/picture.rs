@@ -1,6 +1,6 @@
 //! Reads a picture from an EXR file, candor's own or another program's.
 
-use super::header::text;
+use super::header::{size, text};
 use super::{REC_709, STANDARD_ERROR};
 use crate::estimate::{Bars, Measured};
 use crate::film::SampleRanges;
@@ -88,10 +88,7 @@ impl PictureHeader {
         if colours().any(|channel| channel.sampling != Vec2(1, 1)) {
             return Err("R, G and B are subsampled".to_owned());
         }
-        let pixels = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
-        let Vec2(width, height) = part.layer_size;
-        let size = ImageSize::new(pixels(width), pixels(height))
-            .map_err(|allowed| format!("is {width}x{height}; each side must be {allowed}"))?;
+        let size = size(part)?;
         let samples = text(part, "samples").and_then(|ranges| ranges.parse().ok());
         let has_bars = has(part, &[STANDARD_ERROR]);
         if has_bars && samples.is_none() {
